@@ -1,0 +1,127 @@
+"""What a renderer is given: objects with materials, lights, a camera.
+
+An *object* is the unit of data of the whole study: what one processing element owns, asks for and
+sends. It is an NFF primitive (sphere, cone or cylinder, polygon) or a part of a mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = tuple[float, float, float]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Material:
+    """Surface of an object, as NFF's ``f`` line gives it (Haines 1987)."""
+
+    colour: Vector = (0.75, 0.75, 0.75)
+    kd: float = 1.0
+    """Diffuse share."""
+    ks: float = 0.0
+    """Specular share; a surface with ks > 0 reflects."""
+    shine: float = 1.0
+    """Phong's cosine power."""
+    transmittance: float = 0.0
+    ior: float = 1.0
+    """Index of refraction; only read where transmittance > 0."""
+
+    @property
+    def reflects(self) -> bool:
+        """A hit spawns a reflected ray: the SPD's rule, transmitters reflect too."""
+        return self.ks > 0 or self.transmittance > 0
+
+    @property
+    def transmits(self) -> bool:
+        """A hit spawns a refracted ray."""
+        return self.transmittance > 0
+
+
+@dataclass(frozen=True)
+class Light:
+    """A point light."""
+
+    position: Vector
+    colour: Vector = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera, as NFF's ``v`` lines give it."""
+
+    eye: Vector
+    at: Vector
+    up: Vector = (0.0, 0.0, 1.0)
+    angle_degrees: float = 45.0
+    """Full field of view, the same horizontally and vertically."""
+    hither: float = 0.0
+    """Near plane of hidden-surface programs; a ray tracer ignores it."""
+    resolution: tuple[int, int] = (512, 512)
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere:
+    """A sphere; the wire carries its equation, never triangles."""
+
+    kind: ClassVar[str] = "sphere"
+    centre: Vector
+    radius: float
+    material: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Cone:
+    """An open cylinder or truncated cone, without end caps."""
+
+    kind: ClassVar[str] = "cone"
+    base: Vector
+    base_radius: float
+    apex: Vector
+    apex_radius: float
+    material: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon:
+    """A planar polygon of any number of vertices, convex or concave."""
+
+    kind: ClassVar[str] = "polygon"
+    vertices: Floats
+    """(n, 3) float64, counter-clockwise seen from the outside."""
+    normals: Floats | None = None
+    """(n, 3) float64, one per vertex for smooth shading, or None."""
+    material: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPart:
+    """A part of a triangle mesh: a scene node, a connected component or a cluster."""
+
+    kind: ClassVar[str] = "mesh"
+    vertices: Floats
+    """(n, 3) float64."""
+    faces: NDArray[np.int32]
+    """(m, 3) int32 into ``vertices``."""
+    material: int = 0
+    name: str = ""
+
+
+SceneObject = Sphere | Cone | Polygon | MeshPart
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Objects, their materials, lights and a camera; the order of objects is their id."""
+
+    name: str
+    objects: tuple[SceneObject, ...]
+    materials: tuple[Material, ...]
+    """``object.material`` indexes this tuple."""
+    lights: tuple[Light, ...]
+    camera: Camera
+    background: Vector = (0.0, 0.0, 0.0)

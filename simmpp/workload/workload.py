@@ -1,0 +1,78 @@
+"""The recorded rays of one picture: what has to be tested, whoever does it and whenever.
+
+A workload holds no policy and no machine. Rays are numbered generation by generation: first the
+primary rays in pixel order, then all children of depth 2 in the order of their parents, and so on,
+so the children of a ray are neighbours, in the order reflected, refracted, shadow by light.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+PRIMARY, REFLECTED, REFRACTED, SHADOW = range(4)
+RAY_KINDS = ("primary", "reflected", "refracted", "shadow")
+SPHERE, CONE, POLYGON, MESH = range(4)
+OBJECT_KINDS = ("sphere", "cone", "polygon", "mesh")
+
+
+@dataclass(frozen=True, eq=False)
+class Workload:
+    """All rays of a picture with their itineraries (CSR), and what a machine must know of objects.
+
+    Arrays of rays have n entries, arrays of objects N. All are C-contiguous and read-only.
+    """
+
+    name: str
+    """Label of the scene, e.g. ``mountain:5``."""
+    digest: str
+    """Hexadecimal hash of everything that made this workload."""
+    picture: tuple[int, int]
+    """Rows and columns of primary rays; rays 0 ... rows * columns - 1 are primary, row by row."""
+    kinds: NDArray[np.uint8]
+    """(n,) uint8: PRIMARY, REFLECTED, REFRACTED or SHADOW."""
+    parents: NDArray[np.int32]
+    """(n,) int32: the ray that spawned this one; -1 for a primary ray."""
+    child_offsets: NDArray[np.int32]
+    """(n + 1,) int32: the children of ray i are rays child_offsets[i] ... child_offsets[i + 1] - 1."""
+    pixels: NDArray[np.int32]
+    """(n,) int32: the primary ray at the root of this ray's tree."""
+    hits: NDArray[np.int32]
+    """(n,) int32: the object hit (a shadow ray: the first blocker of its itinerary); -1 for none."""
+    hit_distances: NDArray[np.float64]
+    """(n,) float64: distance of that hit in scene units; inf for none."""
+    itinerary_offsets: NDArray[np.int64]
+    """(n + 1,) int64: ray i is tested against
+    itinerary_objects[itinerary_offsets[i]:itinerary_offsets[i + 1]]."""
+    itinerary_objects: NDArray[np.int32]
+    """(tests,) int32 object ids, front to back."""
+    object_kinds: NDArray[np.uint8]
+    """(N,) uint8: SPHERE, CONE, POLYGON or MESH."""
+    object_triangles: NDArray[np.int32]
+    """(N,) int32: triangles of the object; 0 for spheres and cones."""
+    object_bytes: NDArray[np.int64]
+    """(N,) int64: size on the wire, without a message's header."""
+    object_centroids: NDArray[np.float64]
+    """(N, 3) float64: centre of the object's box, in scene units; owners are placed by it."""
+
+    @property
+    def n_rays(self) -> int:
+        """Number of rays."""
+        return len(self.kinds)
+
+    @property
+    def n_primaries(self) -> int:
+        """Number of primary rays, n0 in the paper."""
+        return self.picture[0] * self.picture[1]
+
+    @property
+    def n_objects(self) -> int:
+        """Number N of objects of the scene, tested or not."""
+        return len(self.object_kinds)
+
+    @property
+    def n_tests(self) -> int:
+        """Number of ray-object intersections of the picture."""
+        return len(self.itinerary_objects)
