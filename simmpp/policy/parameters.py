@@ -1,0 +1,36 @@
+"""What a user sets of a policy: its name and the numbers that its two rules read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+LoadInfo = Literal["piggyback", "exact", "none"]
+
+
+@dataclass(frozen=True)
+class PolicyParameters:
+    """One policy of a run. A rule that a policy does not have ignores its parameters."""
+
+    name: str
+    """A key of ``POLICIES``: object, ray, concurrent or replicated."""
+    label: str = ""
+    """Name in tables and rows; the policy's name when empty."""
+    min_load: Fraction | int = Fraction(12, 100)
+    """The paper's minimal load: a Fraction is a share of n0 / nb, an int a number of rays."""
+    batch: int = 256
+    """Rays that wait for one owner before they are sent, unless there is nothing else to do."""
+    ask_at_least: int = 32
+    """The paper's sufficient count: rays that wait for an object before it is asked for."""
+    load_info: LoadInfo = "piggyback"
+    """How a PE knows the load of another: from headers (the paper), exactly, or not at all."""
+    refresh_ps: int | None = None
+    """With piggyback: send the own load to partners that were sent nothing for that long."""
+    merge_requests: bool = True
+    """One request per missing object in flight; False sends one request per waiting ray."""
+
+    @property
+    def title(self) -> str:
+        """The label, or the name where none was given."""
+        return self.label or self.name
