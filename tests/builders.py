@@ -1,0 +1,246 @@
+"""Small random workloads, machines, placements and policies, and tiny ones put together by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
+from simmpp.placement.placement import Placement
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
+
+SHAPES = (
+    *((n, 1, 1) for n in range(2, 10)),
+    *((2, 2, 1), (2, 2, 2), (3, 2, 1), (4, 2, 1), (3, 3, 1), (1, 7, 1), (1, 1, 5), (1, 2, 4)),
+)
+TIMES_PS = {
+    "free": (0,),
+    "ties": (0, 1, 1, 2, 3),
+    "even": (10_000, 12_345, 20_000, 50_001),
+    "uneven": (0, 0, 1, 2, 10, 100, 1000, 12_345, 10**6, 10**9),
+}
+"""Costs to draw from: time stands still; many instants coincide; alike; far apart."""
+BANDWIDTHS = {
+    "free": (UNLIMITED,),
+    "ties": (UNLIMITED, 10**12, 10**15),
+    "even": (34 * 10**7, 6 * 10**8, 10**10),
+    "uneven": (UNLIMITED, 1, 7 * 10**6, 34 * 10**7, 10**10, 10**12, 3 * 10**12),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """Everything that a run needs."""
+
+    workload: Workload
+    machine: Machine
+    placement: Placement
+    policy: PolicyParameters
+    ready_order: str = "depth-first"
+
+
+# --- by hand ---
+
+
+def workload_of(
+    primaries: int,
+    itineraries: Sequence[Sequence[int]],
+    parents: Sequence[int] = (),
+    kinds: Sequence[int] = (),
+    object_bytes: Sequence[int] = (),
+    object_kinds: Sequence[int] | None = None,
+    object_triangles: Sequence[int] | None = None,
+) -> Workload:
+    """A workload of one row of primary rays, then their descendants; parents are of the latter."""
+    n, n_objects = len(itineraries), len(object_bytes)
+    all_parents = [-1] * primaries + list(parents)
+    first_child = np.searchsorted(np.array(all_parents), np.arange(n), side="left")
+    pixels = list(range(primaries))
+    for parent in parents:
+        pixels.append(pixels[parent])
+    lengths = [len(itinerary) for itinerary in itineraries]
+    hits = [itinerary[-1] if len(itinerary) else -1 for itinerary in itineraries]
+    return Workload(
+        name="by hand",
+        digest="0",
+        picture=(1, primaries),
+        kinds=np.array([PRIMARY] * primaries + (list(kinds) or [SHADOW] * len(parents)), np.uint8),
+        parents=np.array(all_parents, np.int32),
+        child_offsets=np.array([*first_child, n], np.int32),
+        pixels=np.array(pixels, np.int32),
+        hits=np.array(hits, np.int32),
+        hit_distances=np.where(np.array(hits, np.int32) < 0, np.inf, 1.0),
+        itinerary_offsets=np.cumsum([0, *lengths]).astype(np.int64),
+        itinerary_objects=np.array([o for i in itineraries for o in i], np.int32),
+        object_kinds=np.array(object_kinds or [0] * n_objects, np.uint8),
+        object_triangles=np.array(object_triangles or [0] * n_objects, np.int32),
+        object_bytes=np.array(object_bytes, np.int64),
+        object_centroids=np.zeros((n_objects, 3)),
+    )
+
+
+def placement_of(
+    owners: Sequence[int],
+    pixel_pes: Sequence[int],
+    processors: int,
+    replicas: Sequence[Sequence[int]] = (),
+    transient: int = 0,
+) -> Placement:
+    """A placement from lists; replicas by PE."""
+    by_pe = [*replicas, *([()] * (processors - len(replicas)))]
+    return Placement(
+        processors=processors,
+        owners=np.array(owners, np.int32),
+        replica_offsets=np.cumsum([0, *(len(r) for r in by_pe)]).astype(np.int64),
+        replica_objects=np.array([o for r in by_pe for o in r], np.int32),
+        transient=transient,
+        pixel_pes=np.array(pixel_pes, np.int32),
+    )
+
+
+def everywhere(placement: Placement) -> Placement:
+    """The same owners and pixels with a replica of every object on every PE (x = 1)."""
+    owners = [int(o) for o in placement.owners]
+    replicas = [[o for o, k in enumerate(owners) if k != pe] for pe in range(placement.processors)]
+    pixel_pes = [int(k) for k in placement.pixel_pes]
+    return placement_of(owners, pixel_pes, placement.processors, replicas, placement.transient)
+
+
+# --- at random ---
+
+
+def _pick(rng: np.random.Generator, values: Sequence[Any]) -> Any:
+    return values[int(rng.integers(len(values)))]
+
+
+def _children(rng: np.random.Generator, depth: int) -> list[int]:
+    """Kinds of the rays that one ray spawns."""
+    if depth == 4:
+        return []
+    few = [REFLECTED] * int(rng.random() < 0.3) + [REFRACTED] * int(rng.random() < 0.15)
+    return few + [SHADOW] * int(rng.integers(0, 3))
+
+
+def random_workload(rng: np.random.Generator) -> Workload:
+    """0 to 60 primary rays and their trees, 0 to 12 objects of 0 to 4000 bytes."""
+    primaries = int(_pick(rng, (1, 2, 5, 9, 12, 20, 33, 60)) if rng.random() < 0.97 else 0)
+    n_objects = int(rng.integers(2, 13) if rng.random() < 0.9 else rng.integers(0, 2))
+    parents: list[int] = []
+    kinds: list[int] = []
+    generation, depth, spawns = list(range(primaries)), 1, rng.random()
+    while generation:
+        first = primaries + len(parents)
+        for ray in generation:
+            shadow = ray >= primaries and kinds[ray - primaries] == SHADOW
+            for kind in _children(rng, depth) if not shadow and rng.random() < spawns else []:
+                parents.append(ray)
+                kinds.append(kind)
+        generation, depth = list(range(first, primaries + len(parents))), depth + 1
+    shortest, longest = sorted(rng.integers(0, 7, 2).tolist())
+    itineraries = [
+        rng.permutation(n_objects)[: int(rng.integers(shortest, longest + 1))].tolist()
+        for _ in range(primaries + len(parents))
+    ]
+    return workload_of(
+        primaries,
+        itineraries,
+        parents,
+        kinds,
+        [int(_pick(rng, (0, 1, 144, int(rng.integers(4001)), 4000))) for _ in range(n_objects)],
+        rng.integers(0, 4, n_objects).tolist(),
+        rng.integers(0, 6, n_objects).tolist(),
+    )
+
+
+def random_machine(rng: np.random.Generator) -> Machine:
+    """1 to 9 PEs; costs of nothing, of picoseconds and of milliseconds side by side."""
+    costs = _pick(rng, ("ties", "even", "uneven") * 5 + ("free",))
+
+    def time() -> int:
+        return int(_pick(rng, TIMES_PS[costs]))
+
+    def bandwidth() -> int:
+        return int(_pick(rng, BANDWIDTHS[costs]))
+
+    def copies() -> tuple[CopyCost, CopyCost, CopyCost, CopyCost]:
+        a, b, c, d = (CopyCost(time(), bandwidth()) for _ in range(4))
+        return a, b, c, d
+
+    return Machine(
+        name="random",
+        shape=_pick(rng, SHAPES) if rng.random() < 0.96 else (1, 1, 1),
+        send_startup_ps=time(),
+        receive_startup_ps=time(),
+        probe_ps=time(),
+        pack=copies(),
+        unpack=copies(),
+        header_bytes=int(_pick(rng, (0, 1, 64))),
+        request_bytes=int(_pick(rng, (0, 8, 100))),
+        ray_bytes=int(_pick(rng, (0, 1, 80, 333))),
+        latency_ps=time(),
+        hop_latency_ps=time(),
+        link_bytes_per_s=bandwidth(),
+        injection_bytes_per_s=bandwidth(),
+        test=TestCost(time(), time(), time(), time(), time()),
+        ray_ps=time(),
+        quantum=int(rng.integers(1, 10)),
+    )
+
+
+def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
+    """Any owners and pixels; a third of the cases have no replicas."""
+    owners = rng.integers(0, processors, workload.n_objects).tolist()
+    pixel_pes = rng.integers(0, processors, workload.n_primaries).tolist()
+    if rng.random() < 0.3:  # all rays start on one PE
+        pixel_pes = [int(rng.integers(processors))] * workload.n_primaries
+    share = _pick(rng, (0.0, 0.2, 0.6))
+    replicas = [
+        [
+            o
+            for o in rng.permutation(len(owners)).tolist()
+            if owners[o] != k and rng.random() < share
+        ]
+        for k in range(processors)
+    ]
+    return placement_of(owners, pixel_pes, processors, replicas, int(_pick(rng, (0, 0, 1, 2, 3))))
+
+
+def random_policy(rng: np.random.Generator) -> PolicyParameters:
+    """Any combination of parameters; replicated seldom, as it sends no messages."""
+    shares = (Fraction(12, 100), Fraction(0), Fraction(1, 3), Fraction(1), Fraction(5, 2))
+    return PolicyParameters(
+        name=_pick(
+            rng, ("object", "ray", "concurrent") * 5 + ("concurrent",) * 5 + ("replicated",)
+        ),
+        min_load=_pick(rng, (*shares, 0, 1, 2, 7)),
+        batch=int(rng.integers(1, 21)),
+        ask_at_least=int(rng.integers(1, 9)),
+        load_info=_pick(rng, ("piggyback", "exact", "none")),
+        refresh_ps=_pick(rng, (None, None, 0, 1, 1000, 10**6)),
+        merge_requests=bool(rng.integers(2)),
+    )
+
+
+def random_case(seed: int) -> Case:
+    """The case of a seed: the same on every machine."""
+    rng = np.random.default_rng(seed)
+    workload, machine = random_workload(rng), random_machine(rng)
+    placement = random_placement(rng, workload, machine.processors)
+    order = _pick(rng, ("depth-first", "breadth-first"))
+    return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def cases() -> st.SearchStrategy[Case]:
+    """Random cases for hypothesis; an example is told by its seed."""
+    return st.integers(0, 2**32 - 1).map(random_case)
+
+
+def with_policy(case: Case, **changes: Any) -> Case:
+    """The same case under another policy."""
+    return replace(case, policy=replace(case.policy, **changes))

@@ -1,0 +1,1 @@
+"""Slow, obviously correct versions of the clever parts of simmpp, for the tests to compare with."""

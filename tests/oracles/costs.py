@@ -1,0 +1,73 @@
+"""What a message or a test costs, by fractions and by walking over the links of the torus."""
+
+from __future__ import annotations
+
+from collections import deque
+from fractions import Fraction
+from math import floor
+
+from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
+from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
+
+PS_PER_S = 10**12
+
+
+def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
+    """Time that bytes take at a bandwidth, halves rounded up."""
+    if bytes_per_s == UNLIMITED:
+        return 0
+    return floor(Fraction(n_bytes * PS_PER_S, bytes_per_s) + Fraction(1, 2))
+
+
+def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
+    """Time to pack or unpack one message."""
+    return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
+
+
+def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:
+    """Time of one ray-object intersection."""
+    kind, triangles = int(workload.object_kinds[obj]), int(workload.object_triangles[obj])
+    test = machine.test
+    base = {
+        SPHERE: test.sphere_ps,
+        CONE: test.cone_ps,
+        POLYGON: test.polygon_ps,
+        MESH: test.mesh_ps,
+    }[kind]
+    return base + test.per_triangle_ps * max(triangles - 1, 0)
+
+
+def neighbours(shape: tuple[int, int, int], pe: int) -> list[int]:
+    """PEs that a link leads to from this PE."""
+    x_size, y_size, z_size = shape
+    x, y, z = pe % x_size, pe // x_size % y_size, pe // (x_size * y_size)
+    found = []
+    for step in (1, -1):
+        for dx, dy, dz in ((step, 0, 0), (0, step, 0), (0, 0, step)):
+            there = ((x + dx) % x_size, (y + dy) % y_size, (z + dz) % z_size)
+            found.append(there[0] + x_size * (there[1] + y_size * there[2]))
+    return found
+
+
+def hops_from(shape: tuple[int, int, int], pe: int) -> dict[int, int]:
+    """Links on the shortest way from a PE to every PE, by breadth-first search."""
+    hops, queue = {pe: 0}, deque([pe])
+    while queue:
+        here = queue.popleft()
+        for there in neighbours(shape, here):
+            if there not in hops:
+                hops[there] = hops[here] + 1
+                queue.append(there)
+    return hops
+
+
+def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:
+    """Time from departure to arrival on an empty network."""
+    limits = [machine.link_bytes_per_s, machine.injection_bytes_per_s]
+    slowest = min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
+    hops = hops_from(machine.shape, source)[destination]
+    return (
+        machine.latency_ps
+        + hops * machine.hop_latency_ps
+        + transfer_ps(payload_bytes + machine.header_bytes, slowest)
+    )

@@ -1,0 +1,98 @@
+"""What one PE of the oracle holds, in plain lists that are searched from end to end."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+
+@dataclass
+class Message:
+    """One message, with what its header and its payload carry."""
+
+    kind: int
+    source: int
+    destination: int
+    send_number: int
+    payload_bytes: int
+    load: int
+    """The sender's load at packing, without the rays in this message."""
+    departure: int
+    arrival: int
+    obj: int = -1
+    rays: tuple[int, ...] = ()
+
+
+@dataclass
+class PE:
+    """One processing element."""
+
+    number: int
+    resident: set[int]
+    ready: list[int]
+    """Rays, the front one first."""
+    known_load: list[Fraction]
+    waiting: list[tuple[int, int, int]] = field(default_factory=list)
+    """(rank of beginning to wait, object, ray), the oldest first."""
+    in_flight: Counter[int] = field(default_factory=Counter)
+    """Object: requests not yet answered."""
+    sendable_since: dict[int, int] = field(default_factory=dict)
+    """Object: rank of the moment its waiting rays became sendable."""
+    granted: set[int] = field(default_factory=set)
+    """Ready rays whose next object was fetched for them."""
+    transient: list[int] = field(default_factory=list)
+    """Fetched objects kept, the least recently used first."""
+    inbox: deque[Message] = field(default_factory=deque)
+    asleep: bool = False
+    instants: int = 0
+    sends: int = 0
+    ranks: int = 0
+    partners: set[int] = field(default_factory=set)
+    last_departure: Counter[int] = field(default_factory=Counter)
+    ended_load: int = 0
+    """Load at the end of the last ended activity."""
+    refresh_allowed: bool = True
+
+    @property
+    def load(self) -> int:
+        """Rays held."""
+        return len(self.ready) + len(self.waiting)
+
+    def next_rank(self) -> int:
+        """One more than the last rank given."""
+        self.ranks += 1
+        return self.ranks
+
+    def rays_of(self, obj: int) -> list[int]:
+        """Rays that wait for an object, the oldest first."""
+        return [ray for _, waits_for, ray in self.waiting if waits_for == obj]
+
+    def file(self, ray: int, obj: int) -> None:
+        """Let a ray wait for an object, behind all others."""
+        rank = self.next_rank()
+        if not self.rays_of(obj) and not self.in_flight[obj]:
+            self.sendable_since[obj] = rank
+        self.waiting.append((rank, obj, ray))
+
+    def unfile(self, rays: list[int]) -> None:
+        """Take rays out of the wait files."""
+        self.waiting = [entry for entry in self.waiting if entry[2] not in rays]
+
+    def make_ready(self, rays: list[int], ready_order: str) -> None:
+        """Put a block of rays to the front (depth-first) or the back."""
+        self.ready = rays + self.ready if ready_order == "depth-first" else self.ready + rays
+
+    def use(self, obj: int) -> None:
+        """Note that an object of the transient memory was used."""
+        if obj in self.transient:
+            self.transient.remove(obj)
+            self.transient.append(obj)
+
+    def keep(self, obj: int, capacity: int) -> None:
+        """Put a fetched object into the transient memory."""
+        if obj in self.transient:
+            self.transient.remove(obj)
+        self.transient.append(obj)
+        while len(self.transient) > capacity:
+            del self.transient[0]
