@@ -1,0 +1,144 @@
+"""The readable engine: PEs are SimPy processes, messages are events.
+
+It stays lean so that whole pictures can be run: one event per message, scheduled at its arrival,
+inboxes are plain deques, and a sleeping PE has one event to wake it. Ties in time are ordered by
+the priority of an event, a whole number made of (0, destination, source, send number) for arrivals
+and of (1, PE, number) for the PEs' own instants.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Generator
+
+import simpy
+from simpy.events import Event
+
+from simmpp.engine.activities import SLEEP, step
+from simmpp.engine.log import ActivityLog
+from simmpp.engine.state import BEGIN, State, room_for_messages
+from simmpp.engine.tables import NONE
+from simmpp.errors import ModelError
+
+_FIRST = -1  # priority before all others of its instant
+_PROGRESS_EVERY = 4096
+
+
+class SimpyRun:
+    """One run, on a SimPy environment whose clock counts integer picoseconds."""
+
+    def __init__(
+        self,
+        state: State,
+        *,
+        log: ActivityLog | None = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> None:
+        self.state = state
+        self.arrivals = 0
+        self._log, self._progress = log, progress
+        self._environment = simpy.Environment()
+        self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
+        self._asleep: list[Event | None] = [None] * len(state.pes)
+        self._numbers = [0] * len(state.pes)
+        self._end = _happened(self._environment)
+        self._ending = False
+
+    def run(self) -> State:
+        """Run until no ray is left; returns the final state.
+
+        Raises ModelError if rays are left and nothing is scheduled.
+        """
+        if self.state.totals["rays_left"][0] == 0:
+            return self.state
+        for me in range(len(self._inboxes)):
+            self._environment.process(self._processing_element(me))
+        while self._environment.peek() != simpy.core.Infinity and not self._end.processed:
+            self._environment.step()
+        if not self._ending:
+            raise ModelError(starved(self.state))
+        return self.state
+
+    def _processing_element(self, me: int) -> Generator[Event, None, None]:
+        """One PE: a step at each of its instants, asleep between them."""
+        environment, inbox = self._environment, self._inboxes[me]
+        phase = BEGIN
+        yield self._instant(me, 0)
+        while True:
+            self.state = state = room_for_messages(self.state)
+            now_ps = environment.now
+            message = inbox[0] if inbox else NONE
+            if self._log is not None:
+                self._log.about_to_step(state, message)
+            next_ps = step(state, me, phase, message, now_ps)
+            phase, consumed, n_sent, began, tests, rays_left = state.report.tolist()
+            if self._log is not None:
+                self._log.stepped(me, began, tests, n_sent, now_ps, next_ps)
+            if consumed:
+                inbox.popleft()
+            if n_sent:
+                self._carry(n_sent)
+            if rays_left == 0 and not self._ending:
+                self._finish()
+            if next_ps == SLEEP:
+                self._asleep[me] = asleep = _happened(environment)
+                yield asleep
+            else:
+                yield self._instant(me, next_ps - now_ps)
+
+    def _instant(self, me: int, delay_ps: int) -> Event:
+        """The next instant of a PE."""
+        event = _happened(self._environment)
+        self._schedule_instant(me, event, delay_ps)
+        return event
+
+    def _schedule_instant(self, me: int, event: Event, delay_ps: int) -> None:
+        self._numbers[me] += 1
+        priority = (1 << 32 | me) << 64 | self._numbers[me]
+        self._environment.schedule(event, priority, delay_ps)
+
+    def _carry(self, n_sent: int) -> None:
+        """Messages of the outbox travel: each arrives as one event."""
+        state, now_ps = self.state, self._environment.now
+        for row in state.outbox[:n_sent].tolist():
+            m = state.messages[row]
+            destination, source = int(m["destination"]), int(m["source"])
+            arrival = _happened(self._environment, (destination, row))
+            arrival.callbacks.append(self._deliver)
+            priority = (destination << 32 | source) << 64 | int(m["number"])
+            self._environment.schedule(arrival, priority, int(m["arrival_ps"]) - now_ps)
+
+    def _deliver(self, arrival: Event) -> None:
+        """A message arrives: it lies in the inbox, and wakes its PE if that sleeps."""
+        destination, row = arrival.value
+        self.arrivals += 1
+        self._inboxes[destination].append(row)
+        if self._log is not None:
+            self._log.arrived(self.state, row)
+        asleep = self._asleep[destination]
+        if asleep is not None:
+            self._asleep[destination] = None
+            self._schedule_instant(destination, asleep, 0)
+
+    def _finish(self) -> None:
+        """No ray is left: stop at the end of the last ray's last cost, before all else there."""
+        self._ending = True
+        end_ps = int(self.state.totals["last_ray_ps"][0])
+        self._environment.schedule(self._end, _FIRST, end_ps - self._environment.now)
+
+
+def _happened(environment: simpy.Environment, value: object = None) -> Event:
+    """An event that only has to be scheduled: it succeeds when its time comes."""
+    event = Event(environment)
+    event._ok, event._value = True, value
+    return event
+
+
+def starved(state: State) -> str:
+    """What to say when rays are left and nothing is scheduled: a bug, or a policy that starves."""
+    load = state.pes["load"]
+    holders = [f"PE {k}: {load[k]} rays, all waiting" for k in load.nonzero()[0][:5]]
+    return (
+        f"{state.totals['rays_left'][0]} rays are left and nothing is scheduled "
+        f"after {state.totals['tests'][0]} tests: {'; '.join(holders)}"
+    )

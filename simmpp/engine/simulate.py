@@ -1,0 +1,132 @@
+"""One run: a workload, a machine, a placement and a policy give a result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from simmpp.engine.log import ActivityLog
+from simmpp.engine.result import Result
+from simmpp.engine.simpy_engine import SimpyRun
+from simmpp.engine.state import State, new_state
+from simmpp.engine.tables import NONE, USED
+from simmpp.errors import ConfigError, ModelError
+from simmpp.machine.machine import Machine
+from simmpp.placement.placement import Placement
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.table import POLICIES
+from simmpp.workload.workload import Workload
+
+ENGINES = ("simpy",)
+READY_ORDERS = ("depth-first", "breadth-first")
+
+
+def simulate(
+    workload: Workload,
+    machine: Machine,
+    placement: Placement,
+    policy: PolicyParameters,
+    *,
+    engine: str = "simpy",
+    ready_order: str = "depth-first",
+    log: bool = False,
+    record_tests: bool = False,
+    progress: Callable[[int], None] | None = None,
+) -> Result:
+    """Replay a workload on a simulated machine.
+
+    ``log`` keeps the event log, ``record_tests`` the (ray, object) pairs that PEs tested.
+    ``progress`` is called now and then with the number of rays left.
+
+    Raises ConfigError on contradicting arguments, ModelError if rays are left and nothing is
+    scheduled (a bug, or a policy that starves).
+    """
+    _check(workload, machine, placement, policy, engine, ready_order)
+    state = new_state(
+        workload, machine, placement, policy, ready_order=ready_order, record_tests=record_tests
+    )
+    activity_log = ActivityLog(machine.processors) if log else None
+    run = SimpyRun(state, log=activity_log, progress=progress)
+    return _conclude(run.run(), run.arrivals, policy, engine, activity_log)
+
+
+def _check(
+    workload: Workload,
+    machine: Machine,
+    placement: Placement,
+    policy: PolicyParameters,
+    engine: str,
+    ready_order: str,
+) -> None:
+    if policy.name not in POLICIES:
+        raise ConfigError(f"no policy '{policy.name}'; expected one of {', '.join(POLICIES)}")
+    if engine not in ENGINES:
+        raise ConfigError(f"no engine '{engine}'; expected one of {', '.join(ENGINES)}")
+    if ready_order not in READY_ORDERS:
+        raise ConfigError(f"no order '{ready_order}'; expected one of {', '.join(READY_ORDERS)}")
+    if placement.processors != machine.processors:
+        raise ConfigError(
+            f"the placement is for {placement.processors} PEs, the machine has {machine.processors}"
+        )
+    if len(placement.owners) != workload.n_objects:
+        raise ConfigError(
+            f"the placement is for {len(placement.owners)} objects, "
+            f"the workload has {workload.n_objects}"
+        )
+
+
+def _conclude(
+    state: State, arrivals: int, policy: PolicyParameters, engine: str, log: ActivityLog | None
+) -> Result:
+    """Clip the accounts at the makespan and check that the machine lost nothing."""
+    totals = state.totals[0]
+    makespan_ps = int(totals["last_ray_ps"])
+    overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
+    communication_ps = state.pes["communication_ps"] - overrun_ps
+    compute_ps = state.pes["compute_ps"].copy()
+    waiting_ps = makespan_ps - compute_ps - communication_ps
+    sent_by_kind, bytes_sent = _sent_by(state, makespan_ps)
+    if (waiting_ps < 0).any() or (communication_ps < 0).any():
+        raise ModelError(f"the accounts of a PE exceed the makespan of {makespan_ps} ps")
+    return Result(
+        policy=policy.title,
+        engine=engine,
+        makespan_ps=makespan_ps,
+        messages_by_kind=sent_by_kind,
+        messages_received=int(totals["received"]),
+        bytes_sent=bytes_sent,
+        rays=int(totals["rays"]),
+        tests=int(totals["tests"]),
+        rays_sent=int(totals["rays_sent"]),
+        compute_ps=compute_ps,
+        communication_ps=communication_ps,
+        waiting_ps=waiting_ps,
+        peak_rays=int(state.pes["peak_rays"].max()),
+        peak_bytes=int(state.pes["peak_bytes"].max()),
+        events=int(totals["activities"]) + arrivals,
+        rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
+        log=log.events(makespan_ps) if log else None,
+        tested_rays=state.tested_rays if len(state.tested_rays) else None,
+        tested_objects=state.tested_objects if len(state.tested_objects) else None,
+    )
+
+
+def _sent_by(state: State, end_ps: int) -> tuple[tuple[int, int, int, int], int]:
+    """Messages and bytes that had departed at the end; only load messages can be later."""
+    pool = state.messages[: state.message_marks[USED]]
+    late = pool[(pool["kind"] != NONE) & (pool["depart_ps"] > end_ps)]
+    by_kind = state.sent_by_kind - np.bincount(late["kind"], minlength=4)
+    header_bytes = int(state.setup["header_bytes"][0])
+    late_bytes = int(late["payload_bytes"].sum()) + header_bytes * len(late)
+    requests, objects, rays, loads = (int(n) for n in by_kind)
+    return (requests, objects, rays, loads), int(state.totals["bytes_sent"][0]) - late_bytes
+
+
+def _never_fired(
+    policy: DataflowPolicy, sent_by_kind: tuple[int, int, int, int]
+) -> tuple[str, ...]:
+    requests, _, rays, _ = sent_by_kind
+    fired = {"send": not policy.sends or rays > 0, "ask": not policy.asks or requests > 0}
+    return tuple(rule for rule, it_did in fired.items() if not it_did)

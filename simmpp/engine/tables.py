@@ -1,0 +1,160 @@
+"""Sparse state: hashed tables of records and doubly linked lists, in plain arrays.
+
+Of the nb x N pairs (PE, object) and the nb x nb pairs (PE, PE) only those that something is known
+about have a row, so memory grows with what happens, not with the size of the machine. The arrays
+are reserved at an upper bound, but the system gives memory only to pages that were touched.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+NONE = -1
+FREE, USED = 0, 1
+
+
+class Table(NamedTuple):
+    """Rows found by a 64-bit key; a hash table with chains."""
+
+    buckets: NDArray[np.int32]
+    """(2^k,) int32: first row of each bucket, plus 1; 0 for none."""
+    rows: NDArray[np.void]
+    """(capacity,) records with at least the fields ``key`` (int64) and ``chain`` (int32)."""
+    marks: NDArray[np.int32]
+    """(2,) int32: head of the list of freed rows, and number of rows ever used."""
+
+
+class Lists(NamedTuple):
+    """Doubly linked lists; an item is in at most one list of the family."""
+
+    ends: NDArray[np.int32]
+    """(lists, 2) int32: first and last item, plus 1; 0 when empty."""
+    links: NDArray[np.int32]
+    """(items, 2) int32: previous and next item."""
+
+
+def new_table(dtype: np.dtype[np.void], capacity: int) -> Table:
+    """An empty table for at most ``capacity`` rows of ``dtype`` at a time."""
+    n_buckets = 1 << max(4, int(capacity - 1).bit_length())
+    return Table(
+        np.zeros(n_buckets, np.int32),
+        np.zeros(capacity, dtype),
+        np.array([NONE, 0], np.int32),
+    )
+
+
+def new_lists(n_lists: int, n_items: int) -> Lists:
+    """Empty lists over items 0 ... n_items - 1."""
+    return Lists(np.zeros((n_lists, 2), np.int32), np.zeros((n_items, 2), np.int32))
+
+
+@njit(cache=True, error_model="numpy")
+def _bucket(table: Table, key: int) -> int:
+    # Fibonacci hashing: the upper bits of key * 2^64 / golden ratio.
+    mixed = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
+    return np.int64((mixed >> np.uint64(33)) & np.uint64(table.buckets.size - 1))
+
+
+@njit(cache=True, error_model="numpy")
+def find(table: Table, key: int) -> int:
+    """The row of ``key``, or NONE."""
+    row = table.buckets[_bucket(table, key)] - 1
+    while row >= 0 and table.rows[row].key != key:
+        row = table.rows[row].chain
+    return row
+
+
+@njit(cache=True, error_model="numpy")
+def add(table: Table, key: int) -> int:
+    """A new row for ``key``, which must not have one; its other fields are the caller's to set."""
+    row = take(table.rows, table.marks)
+    bucket = _bucket(table, key)
+    table.rows[row].key = key
+    table.rows[row].chain = table.buckets[bucket] - 1
+    table.buckets[bucket] = row + 1
+    return row
+
+
+@njit(cache=True, error_model="numpy")
+def remove(table: Table, row: int) -> None:
+    """Forget a row; its place is used again."""
+    bucket = _bucket(table, table.rows[row].key)
+    at = table.buckets[bucket] - 1
+    if at == row:
+        table.buckets[bucket] = table.rows[row].chain + 1
+    else:
+        while table.rows[at].chain != row:
+            at = table.rows[at].chain
+        table.rows[at].chain = table.rows[row].chain
+    give_back(table.rows, table.marks, row)
+
+
+@njit(cache=True, error_model="numpy")
+def take(rows: NDArray[np.void], marks: NDArray[np.int32]) -> int:
+    """A free place among ``rows``; freed places are linked through ``chain``."""
+    row = marks[FREE]
+    if row >= 0:
+        marks[FREE] = rows[row].chain
+        return row
+    row = marks[USED]
+    if row >= rows.size:
+        raise MemoryError("a table of the simulated machine is full")
+    marks[USED] = row + 1
+    return row
+
+
+@njit(cache=True, error_model="numpy")
+def give_back(rows: NDArray[np.void], marks: NDArray[np.int32], row: int) -> None:
+    """Make a place free again."""
+    rows[row].chain = marks[FREE]
+    marks[FREE] = row
+
+
+@njit(cache=True, error_model="numpy")
+def first(lists: Lists, which: int) -> int:
+    """The first item of list ``which``, or NONE."""
+    return lists.ends[which, 0] - 1
+
+
+@njit(cache=True, error_model="numpy")
+def append(lists: Lists, which: int, item: int) -> None:
+    """Put ``item`` at the end of list ``which``."""
+    last = lists.ends[which, 1] - 1
+    lists.links[item, 0] = last
+    lists.links[item, 1] = NONE
+    if last >= 0:
+        lists.links[last, 1] = item
+    else:
+        lists.ends[which, 0] = item + 1
+    lists.ends[which, 1] = item + 1
+
+
+@njit(cache=True, error_model="numpy")
+def unlink(lists: Lists, which: int, item: int) -> None:
+    """Take ``item`` out of list ``which``, wherever it stands."""
+    before, after = lists.links[item, 0], lists.links[item, 1]
+    if before >= 0:
+        lists.links[before, 1] = after
+    else:
+        lists.ends[which, 0] = after + 1
+    if after >= 0:
+        lists.links[after, 0] = before
+    else:
+        lists.ends[which, 1] = before + 1
+
+
+@njit(cache=True, error_model="numpy")
+def sort_by_key(keys: NDArray[np.int64], items: NDArray[np.int64], n: int) -> None:
+    """Sort the first n items by their distinct keys, in place (Shell sort, Ciura's gaps)."""
+    for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):
+        for i in range(gap, n):
+            key, item = keys[i], items[i]
+            j = i
+            while j >= gap and keys[j - gap] > key:
+                keys[j], items[j] = keys[j - gap], items[j - gap]
+                j -= gap
+            keys[j], items[j] = key, item

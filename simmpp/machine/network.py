@@ -1,0 +1,26 @@
+"""How long bytes take, in whole picoseconds, on a link or through a copy."""
+
+from __future__ import annotations
+
+from numba import njit
+
+PS_PER_S = 10**12
+MAX_BYTES_PER_S = 9 * 10**15
+"""Fastest bandwidth that ``transfer_ps`` computes without overflow: remainder * 1000 < 2^63."""
+
+
+@njit(cache=True, error_model="numpy")
+def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
+    """Time of ``n_bytes`` at ``bytes_per_s``: bytes * 10^12 / bandwidth, halves rounded up.
+
+    Long division in steps of 1000 keeps every intermediate value below 2^63. A bandwidth of 0
+    means unlimited.
+    """
+    if bytes_per_s == 0:
+        return 0
+    whole, rest = n_bytes // bytes_per_s, n_bytes % bytes_per_s
+    for _ in range(4):
+        rest *= 1000
+        whole = whole * 1000 + rest // bytes_per_s
+        rest %= bytes_per_s
+    return whole + (1 if rest >= bytes_per_s - rest else 0)

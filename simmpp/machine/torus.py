@@ -1,0 +1,38 @@
+"""The 3-D torus: where PEs sit, and how many hops lie between two of them."""
+
+from __future__ import annotations
+
+from numba import njit
+
+
+def default_shape(processors: int) -> tuple[int, int, int]:
+    """The most cubic torus of that many PEs: X >= Y >= Z with the least X + Y + Z.
+
+    Source: near-cubic partitions of the T3E (ESTIMATE: real ones also held system PEs).
+    """
+    shapes = (
+        (processors // (y * z), y, z)
+        for z in range(1, round(processors ** (1 / 3)) + 2)
+        if processors % z == 0
+        for y in range(z, processors // z + 1)
+        if y * y * z <= processors and processors % (y * z) == 0
+    )
+    return min(shapes, key=lambda shape: (sum(shape), shape))
+
+
+@njit(cache=True, error_model="numpy")
+def ring_distance(size: int, a: int, b: int) -> int:
+    """Hops from a to b on a ring of ``size`` PEs, the shortest way round."""
+    forward = abs(b - a)
+    return min(forward, size - forward)
+
+
+@njit(cache=True, error_model="numpy")
+def hops(x_size: int, y_size: int, z_size: int, source: int, destination: int) -> int:
+    """Links that a message crosses under dimension-order routing; PE k = x + X (y + Y z)."""
+    source_row, destination_row = source // x_size, destination // x_size
+    return (
+        ring_distance(x_size, source % x_size, destination % x_size)
+        + ring_distance(y_size, source_row % y_size, destination_row % y_size)
+        + ring_distance(z_size, source_row // y_size, destination_row // y_size)
+    )
