@@ -15,7 +15,6 @@ from simmpp.engine.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.sending import copy_ps, send
 from simmpp.engine.state import (
     BEGAN,
-    BEGIN,
     COMPUTE,
     CONSUMED,
     DISPATCH,
@@ -96,7 +95,7 @@ def receive(s: State, me: int, message: int, now_ps: int) -> int:
 def _hear(s: State, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
     setup = s.setup[0]
-    refreshes = setup.refresh_ps != NONE and (kind == OBJECT or kind == RAYS)
+    refreshes = setup.refresh_ps != NONE and kind in (OBJECT, RAYS)
     if setup.listens or refreshes:
         partner = s.partners.rows[partner_of(s, me, source)]
         partner.load = load

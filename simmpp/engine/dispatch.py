@@ -156,7 +156,8 @@ def _refresh_loads(s: State, me: int, now_ps: int) -> int:
     for distance in range(1, setup.processors):
         other = (me + distance) % setup.processors
         row = find(s.partners, me * setup.processors + other)
-        if row != NONE and s.partners.rows[row].exchanged:
-            if clock_ps - s.partners.rows[row].sent_ps >= setup.refresh_ps:
-                clock_ps = send(s, me, other, LOAD, NONE, NONE, NONE, 0, 0, clock_ps)
+        if row == NONE or not s.partners.rows[row].exchanged:
+            continue
+        if clock_ps - s.partners.rows[row].sent_ps >= setup.refresh_ps:
+            clock_ps = send(s, me, other, LOAD, NONE, NONE, NONE, 0, 0, clock_ps)
     return clock_ps

@@ -52,7 +52,7 @@ def send(
     if setup.refresh_ps != NONE:
         partner = s.partners.rows[partner_of(s, me, destination)]
         partner.sent_ps = depart_ps
-        if kind == OBJECT or kind == RAYS:
+        if kind in (OBJECT, RAYS):
             partner.exchanged = 1
     s.outbox[s.report[OUTBOX]] = row
     s.report[OUTBOX] += 1

@@ -1,1 +1,1 @@
-
+"""The machine: torus, costs, messages, presets."""

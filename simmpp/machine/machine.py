@@ -1,4 +1,4 @@
-"""The machine, in the integers that the simulation runs on: picoseconds, bytes, bytes per second."""
+"""The machine, in the integers that a simulation runs on: picoseconds, bytes, bytes per second."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.units import UNLIMITED as UNLIMITED
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
-
-UNLIMITED = 0
-"""Bandwidth (bytes per second) of a copy or link that takes no time."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,8 @@ class TestCost:
             self.mesh_ps,
         )
         beyond_first = np.maximum(triangles.astype(np.int64) - 1, 0)
-        return by_kind[kinds] + self.per_triangle_ps * beyond_first
+        costs: NDArray[np.int64] = by_kind[kinds] + self.per_triangle_ps * beyond_first
+        return costs
 
 
 @dataclass(frozen=True)

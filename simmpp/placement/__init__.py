@@ -1,1 +1,1 @@
-
+"""Who owns, who holds and who starts what."""

@@ -1,1 +1,1 @@
-
+"""Policies: a send rule and an ask rule each."""

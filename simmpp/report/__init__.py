@@ -1,1 +1,1 @@
-
+"""Profits and pictures from rows."""

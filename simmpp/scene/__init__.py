@@ -1,1 +1,1 @@
-
+"""Scenes: objects, materials, lights, cameras, and where they come from."""

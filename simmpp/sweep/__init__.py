@@ -1,1 +1,1 @@
-
+"""Configurations and the points that they ask for."""

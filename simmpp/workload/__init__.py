@@ -1,1 +1,1 @@
-
+"""Workloads: all rays of a picture with the objects they have to be tested against."""

@@ -1,1 +1,1 @@
-
+"""The Standard Procedural Databases (Haines 1987), generated."""

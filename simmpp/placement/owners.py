@@ -1,0 +1,72 @@
+"""Which PE owns which object: the one that all others ask for it and send rays to for it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.placement.parts import cut
+from simmpp.placement.placement import Owners
+from simmpp.placement.streams import generator
+
+MORTON_BITS = 21
+"""Bits a coordinate is cut to, so that three of them interleave into 63."""
+
+
+def owners(
+    rule: Owners, centroids: NDArray[np.float64], processors: int, seed: int
+) -> NDArray[np.int32]:
+    """The owner of each object: (N,) int32.
+
+    ``centroids`` is (N, 3) float64. Every rule gives each PE floor(N / nb) or ceil(N / nb) objects.
+    """
+    n_objects = len(centroids)
+    if rule == "bisection":
+        return _bisection(centroids, processors)
+    if rule == "round_robin":
+        return (np.arange(n_objects) % processors).astype(np.int32)
+    if rule == "morton":
+        order = np.lexsort((np.arange(n_objects), _morton(centroids)))
+    else:
+        order = generator(seed, "owners").permutation(n_objects)
+    dealt = np.empty(n_objects, np.int32)
+    dealt[order] = cut(n_objects, processors)
+    return dealt
+
+
+def _bisection(centroids: NDArray[np.float64], processors: int) -> NDArray[np.int32]:
+    """Recursive bisection of space; counts are split floor(n / 2) : rest, like the PEs.
+
+    Objects are split in proportion to the PEs of each half, so that parts stay balanced when the
+    number of PEs is not a power of two.
+    """
+    part_of = np.zeros(len(centroids), np.int32)
+    pending = [(np.arange(len(centroids)), 0, processors)]
+    while pending:
+        ids, first_pe, n_pes = pending.pop()
+        if n_pes == 1 or len(ids) == 0:
+            part_of[ids] = first_pe
+            continue
+        left_pes = n_pes // 2
+        cut = len(ids) * left_pes // n_pes
+        points = centroids[ids]
+        axis = int(np.argmax(np.ptp(points, axis=0)))  # the first of equals: x < y < z
+        order = ids[np.lexsort((ids, points[:, axis]))]
+        pending.append((np.sort(order[:cut]), first_pe, left_pes))
+        pending.append((np.sort(order[cut:]), first_pe + left_pes, n_pes - left_pes))
+    return part_of
+
+
+def _morton(centroids: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """Position of each centroid on the Z-order curve through the scene's box."""
+    if len(centroids) == 0:
+        return np.zeros(0, np.uint64)
+    low = centroids.min(axis=0)
+    extent = float(np.max(np.ptp(centroids, axis=0))) or 1.0
+    cells = ((centroids - low) / extent * (2**MORTON_BITS - 1)).astype(np.uint64)
+    code = np.zeros(len(centroids), np.uint64)
+    for bit in range(MORTON_BITS):
+        for axis in range(3):
+            taken = cells[:, axis] >> np.uint64(bit) & np.uint64(1)
+            code |= taken << np.uint64(3 * bit + axis)
+    return code

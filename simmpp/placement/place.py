@@ -1,0 +1,25 @@
+"""One draw of a placement: owners, residents, pixels."""
+
+from __future__ import annotations
+
+from simmpp.placement.owners import owners
+from simmpp.placement.pixels import pixel_pes
+from simmpp.placement.placement import Memory, Placement, PlacementRules
+from simmpp.placement.residents import replicas
+from simmpp.workload.workload import Workload
+
+
+def place(
+    workload: Workload, processors: int, memory: Memory, rules: PlacementRules, seed: int
+) -> Placement:
+    """Place a workload on ``processors`` PEs; the same arguments give the same placement."""
+    owner_of = owners(rules.owners, workload.object_centroids, processors, seed)
+    offsets, objects = replicas(workload, owner_of, processors, memory, seed)
+    return Placement(
+        processors=processors,
+        owners=owner_of,
+        replica_offsets=offsets,
+        replica_objects=objects,
+        transient=memory.transient,
+        pixel_pes=pixel_pes(rules.pixels, workload.picture, processors, seed),
+    )

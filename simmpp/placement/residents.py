@@ -1,0 +1,86 @@
+"""Which objects are resident on a PE besides its own: replicas, up to the memory's share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.placement.placement import Memory, Residents
+from simmpp.placement.streams import generator
+from simmpp.workload.workload import Workload
+
+COARSE_PRE_PASS = 16
+"""``hot`` counts the itineraries of every 16th pixel's rays (ESTIMATE: a 1/16 pre-pass)."""
+
+Ids = NDArray[np.int32]
+Ranking = Callable[[int], Ids]
+"""All objects that a PE does not own, the first to be replicated first."""
+
+
+def replicas(
+    workload: Workload, owners: Ids, processors: int, memory: Memory, seed: int
+) -> tuple[NDArray[np.int64], Ids]:
+    """Replicas of each PE as CSR: offsets (nb + 1,) int64 and object ids int32.
+
+    A PE's replicas are a prefix of one ranking of the objects it does not own, so a larger memory
+    holds all that a smaller one held.
+    """
+    ranking = _rankings(memory.residents, workload, owners, seed)
+    n_own = np.bincount(owners, minlength=processors)
+    held: list[Ids] = []
+    for pe in range(processors):
+        if memory.bytes is None:
+            wanted = resident_count(memory.fraction, workload.n_objects) - int(n_own[pe])
+            held.append(ranking(pe)[:wanted] if wanted > 0 else np.zeros(0, np.int32))
+        else:
+            held.append(_fitting(workload, owners, pe, ranking(pe), memory.bytes))
+    offsets = np.concatenate([[0], np.cumsum([len(ids) for ids in held])]).astype(np.int64)
+    return offsets, np.concatenate(held, dtype=np.int32)
+
+
+def resident_count(fraction: Fraction, n_objects: int) -> int:
+    """floor(x N + 1/2), exactly."""
+    return int(fraction * n_objects + Fraction(1, 2))
+
+
+def _fitting(workload: Workload, owners: Ids, pe: int, ranked: Ids, room_bytes: int) -> Ids:
+    """The longest prefix of the ranking that fits beside the PE's own objects."""
+    own_bytes = int(workload.object_bytes[owners == pe].sum())
+    total = own_bytes + np.cumsum(workload.object_bytes[ranked])
+    return ranked[: int(np.searchsorted(total, room_bytes, side="right"))]
+
+
+def _rankings(rule: Residents, workload: Workload, owners: Ids, seed: int) -> Ranking:
+    ids = np.arange(workload.n_objects, dtype=np.int32)
+    if rule == "random":
+        return lambda pe: generator(seed, "residents", pe).permutation(ids[owners != pe])
+    if rule == "hot":
+        uses = _coarse_uses(workload)
+        hottest = ids[np.lexsort((ids, -uses))]
+        return lambda pe: hottest[owners[hottest] != pe]
+    return lambda pe: _nearest(workload.object_centroids, owners, pe)
+
+
+def _coarse_uses(workload: Workload) -> NDArray[np.int64]:
+    """How often each object is tested by the rays of every 16th pixel: (N,) int64."""
+    lengths = np.diff(workload.itinerary_offsets)
+    sampled = np.repeat(workload.pixels % COARSE_PRE_PASS == 0, lengths)
+    return np.bincount(workload.itinerary_objects[sampled], minlength=workload.n_objects)
+
+
+def _nearest(centroids: NDArray[np.float64], owners: Ids, pe: int) -> Ids:
+    """Objects by the distance of their centroid from the box of the PE's own centroids.
+
+    A PE that owns nothing has no region; it takes objects in the order of their ids.
+    """
+    others = np.flatnonzero(owners != pe).astype(np.int32)
+    own = centroids[owners == pe]
+    if len(own) == 0:
+        return others
+    low, high = own.min(axis=0), own.max(axis=0)
+    points = centroids[others]
+    outside = np.maximum(np.maximum(low - points, points - high), 0.0)
+    return others[np.lexsort((others, (outside**2).sum(axis=1)))]
