@@ -1,0 +1,174 @@
+"""Machines that come with the package: constants with the source of each, made into a Machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import as_file, files
+from math import prod
+
+from simmpp.errors import ConfigError
+from simmpp.machine.constants import MOST_PROCESSORS, Constants
+from simmpp.machine.machine import CopyCost, Machine, TestCost
+from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.torus import default_shape
+from simmpp.strict import Place, misplaced, structure
+from simmpp.units import shown
+from simmpp.yamlfile import Document, KeyPath, read_yaml
+
+_FOLDER = files("simmpp") / "machine" / "presets"
+OVERRIDDEN = "set by the user"
+
+Shape = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A machine as far as its documents and estimates describe it."""
+
+    name: str
+    description: str
+    constants: Constants
+    texts: dict[str, str]
+    """Each constant as the preset's file writes it, with its unit, by dotted key."""
+    sources: dict[str, str]
+    """A citation for each constant, or ESTIMATE and the range; by the same keys."""
+
+
+def preset_names() -> list[str]:
+    """Names that ``load_preset`` knows."""
+    found = (entry.name for entry in _FOLDER.iterdir())
+    return sorted(name.removesuffix(".yaml") for name in found if name.endswith(".yaml"))
+
+
+def load_preset(name: str) -> Preset:
+    """Read one of the package's machines.
+
+    Raises ConfigError if there is none of that name.
+    """
+    if name not in preset_names():
+        expected = ", ".join(preset_names())
+        raise ConfigError(f"value {shown(name)}: expected a preset: {expected}")
+    with as_file(_FOLDER / f"{name}.yaml") as path:
+        document = read_yaml(path)
+    return _preset(name, document)
+
+
+def _preset(name: str, document: Document) -> Preset:
+    places: dict[KeyPath, Place] = {
+        path[1:]: (document.where, line)
+        for path, line in document.lines.items()
+        if path[:1] == ("constants",)
+    }
+    data = document.data
+    if not isinstance(data, dict) or set(data) != {"description", "constants"}:
+        raise ConfigError("expected the keys description, constants", where=document.where)
+    texts: dict[str, str] = {}
+    sources: dict[str, str] = {}
+    values = _values(data["constants"], (), texts, sources, places)
+    constants = structure(Constants, values, places)
+    return Preset(name, " ".join(str(data["description"]).split()), constants, texts, sources)
+
+
+def _values(
+    node: object,
+    path: KeyPath,
+    texts: dict[str, str],
+    sources: dict[str, str],
+    places: Mapping[KeyPath, Place],
+) -> object:
+    """``{value, source}`` leaves reduced to their values; the rest goes into texts and sources."""
+    if not isinstance(node, dict):
+        raise misplaced(path, "expected {value: ..., source: ...}", places)
+    if "value" not in node:
+        return {
+            key: _values(child, (*path, key), texts, sources, places) for key, child in node.items()
+        }
+    key = ".".join(map(str, path))
+    source = node.get("source")
+    if set(node) != {"value", "source"} or not isinstance(source, str) or not source.strip():
+        raise misplaced(path, "expected {value: ..., source: ...}", places)
+    texts[key], sources[key] = str(node["value"]), " ".join(source.split())
+    return node["value"]
+
+
+def machine(
+    preset: str = "t3e",
+    overrides: Mapping[str, object] | Constants | None = None,
+    processors: int = 64,
+    shape: Shape | None = None,
+) -> Machine:
+    """A preset's machine of ``processors`` PEs, with some constants overridden.
+
+    ``overrides`` has the keys of a configuration's ``machine``: ``{"send_startup": "5 us"}``. The
+    torus is ``shape``, else the overrides' shape, else the most cubic one.
+    Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
+    """
+    if not isinstance(overrides, Constants):
+        overrides = structure(Constants, dict(overrides or {}), {})
+    chosen = load_preset(preset)
+    changed = overrides.flat()
+    sources = {key: chosen.sources[_cited(key, chosen)] for key in chosen.constants.flat()}
+    return _machine(
+        preset,
+        torus_shape(processors, shape or overrides.shape),
+        chosen.constants.flat() | changed,
+        sources | dict.fromkeys(changed, OVERRIDDEN),
+    )
+
+
+def _cited(key: str, preset: Preset) -> str:
+    """The key in the preset's file that set a constant: ``pack.fixed`` sets ``pack.rays.fixed``."""
+    first, _, last = key.partition(".")
+    candidates = (key, f"{first}.{last.rpartition('.')[2]}", first)
+    return next(candidate for candidate in candidates if candidate in preset.sources)
+
+
+def torus_shape(processors: int, shape: Shape | None) -> Shape:
+    """``shape`` if it holds ``processors`` PEs; the most cubic torus where it is None.
+
+    Raises ConfigError otherwise.
+    """
+    if not 1 <= processors <= MOST_PROCESSORS:
+        expected = f"an integer from 1 to {MOST_PROCESSORS}"
+        raise ConfigError(f"processors: value {shown(processors)}: expected {expected}")
+    if shape is not None and prod(shape) != processors:
+        expected = f"three integers whose product is processors = {processors}"
+        raise ConfigError(f"machine.shape: value {list(shape)}: expected {expected}")
+    return shape or default_shape(processors)
+
+
+def _machine(name: str, shape: Shape, value: dict[str, int], sources: dict[str, str]) -> Machine:
+    def copies(key: str) -> tuple[CopyCost, CopyCost, CopyCost, CopyCost]:
+        request, object_, rays, load = (
+            CopyCost(value[f"{key}.{kind}.fixed"], value[f"{key}.{kind}.bandwidth"])
+            for kind in MESSAGE_KINDS
+        )
+        return request, object_, rays, load
+
+    return Machine(
+        name=name,
+        shape=shape,
+        send_startup_ps=value["send_startup"],
+        receive_startup_ps=value["receive_startup"],
+        probe_ps=value["probe"],
+        pack=copies("pack"),
+        unpack=copies("unpack"),
+        header_bytes=value["header_bytes"],
+        request_bytes=value["request_bytes"],
+        ray_bytes=value["ray_bytes"],
+        latency_ps=value["latency"],
+        hop_latency_ps=value["hop_latency"],
+        link_bytes_per_s=value["link_bandwidth"],
+        injection_bytes_per_s=value["injection_bandwidth"],
+        test=TestCost(
+            value["test.sphere"],
+            value["test.cone"],
+            value["test.polygon"],
+            value["test.mesh"],
+            value["test.per_triangle"],
+        ),
+        ray_ps=value["ray"],
+        quantum=value["quantum"],
+        sources=sources,
+    )

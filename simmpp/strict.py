@@ -1,0 +1,190 @@
+"""Strict settings: pydantic models whose every mistake becomes one line, with its place.
+
+Each field says in ``Expect`` what it takes: the text of its errors and of the table of keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+from typing import Annotated, Any, TypeVar, get_args
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from simmpp import units
+from simmpp.errors import ConfigError
+from simmpp.units import shown
+from simmpp.yamlfile import KeyPath
+
+Place = tuple[str, int | None]
+"""Where a key was set: a file or ``--set KEY``, and the line."""
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class Strict(BaseModel):
+    """Settings that can't be changed and have no other keys than the named ones."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+@dataclass(frozen=True)
+class Expect:
+    """What a key takes, in words, and its unit for the table of keys."""
+
+    text: str
+    unit: str = ""
+
+
+def parsed_by(parse: Callable[[Any], object]) -> BeforeValidator:
+    """A validator from a function that raises ConfigError for a wrong value."""
+
+    def validate(value: object) -> object:
+        try:
+            return parse(value)
+        except ConfigError as error:
+            raise PydanticCustomError("simmpp", "{problem}", {"problem": error.problem}) from None
+
+    return BeforeValidator(validate)
+
+
+def _wrong(value: object, expected: str) -> ConfigError:
+    return ConfigError(f"value {shown(value)}: expected {expected}")
+
+
+def integer(least: int, most: int) -> tuple[BeforeValidator, Expect]:
+    """Marks of a whole number from ``least`` to ``most``: ``Annotated[int, *integer(1, 8)]``."""
+    expected = f"an integer from {least} to {most}"
+
+    def parse(value: object) -> int:
+        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
+            raise _wrong(value, expected)
+        return value
+
+    return parsed_by(parse), Expect(expected)
+
+
+def one_of(*words: str) -> tuple[BeforeValidator, Expect]:
+    """Marks of one of these words."""
+    expected = " or ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else words[0]
+
+    def parse(value: object) -> str:
+        if not isinstance(value, str) or value not in words:
+            raise _wrong(value, expected)
+        return value
+
+    return parsed_by(parse), Expect(expected)
+
+
+def _switch(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise _wrong(value, "true or false")
+    return value
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str) or not value or not value.isprintable():
+        raise _wrong(value, "a text of one line")
+    return value
+
+
+Time = Annotated[int, parsed_by(units.picoseconds), Expect(units.A_TIME, "time")]
+Size = Annotated[int, parsed_by(units.byte_count), Expect(units.A_SIZE, "bytes")]
+Bandwidth = Annotated[
+    int, parsed_by(units.bytes_per_second), Expect(units.A_BANDWIDTH, "bytes / time")
+]
+Share = Annotated[Fraction, parsed_by(units.share), Expect(units.A_SHARE)]
+Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
+Text = Annotated[str, parsed_by(_text), Expect("a text of one line")]
+
+
+def expectation(model: type[BaseModel], key: str) -> Expect | None:
+    """What a field of a model takes, if it says so."""
+    field = model.model_fields[key]
+    found = [m for m in field.metadata if isinstance(m, Expect)]
+    for option in get_args(field.annotation):  # of "X | None"
+        found += [m for m in getattr(option, "__metadata__", ()) if isinstance(m, Expect)]
+    return found[0] if found else None
+
+
+def structure(model: type[Model], data: object, places: Mapping[KeyPath, Place]) -> Model:
+    """Make a model of plain data.
+
+    Raises ConfigError for the first mistake, with the place of its key from ``places``.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        mistakes = error.errors(include_url=False)
+    raise misplaced(*_mistake(model, mistakes[0]), places)
+
+
+def misplaced(path: KeyPath, problem: str, places: Mapping[KeyPath, Place]) -> ConfigError:
+    """The error for ``path``; ``problem`` follows the key in the line."""
+    path = _as_written(path, places)
+    nearest = next((path[:n] for n in range(len(path), -1, -1) if path[:n] in places), ())
+    where, line = places.get(nearest, ("", None))
+    key = dotted(path)
+    prefix = "" if not key or where == f"--set {key}" else f"{key}: "
+    return ConfigError(prefix + problem, where=where, line=line)
+
+
+def dotted(path: KeyPath) -> str:
+    """``("policy", 1, "batch")`` -> ``policy[1].batch``."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{_plain(part)}" for part in path)
+    return text.removeprefix(".")
+
+
+def _plain(part: str) -> str:
+    return part if part.isprintable() else repr(part)
+
+
+def _as_written(path: KeyPath, places: Mapping[KeyPath, Place]) -> KeyPath:
+    """Without the indices of lists that the user wrote as a single value."""
+    written: KeyPath = ()
+    for part in path:
+        if not isinstance(part, int) or not places or (*written, part) in places:
+            written = (*written, part)
+    return written
+
+
+def _mistake(model: type[BaseModel], mistake: ErrorDetails) -> tuple[KeyPath, str]:
+    """Path and problem of one of pydantic's errors."""
+    path, kind = tuple(mistake["loc"]), mistake["type"]
+    if kind == "simmpp":
+        return path, mistake["ctx"]["problem"]
+    if kind == "missing":
+        return path[:-1], f"missing key {path[-1]!r}"
+    if kind == "extra_forbidden":
+        return path[:-1], unknown(str(path[-1]), sorted(_model_at(model, path[:-1]).model_fields))
+    if kind in ("model_type", "model_attributes_type", "dict_type"):
+        return path, f"value {shown(mistake['input'])}: expected a mapping (key: value)"
+    return path, f"value {shown(mistake['input'])}: {mistake['msg']}"
+
+
+def unknown(key: str, known: list[str]) -> str:
+    """The problem with a key that doesn't exist: the nearest that does, or all."""
+    near = get_close_matches(key, known, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"expected one of {', '.join(known)}"
+    return f"unknown key {shown(key)}: {hint}"
+
+
+def _model_at(model: type[BaseModel], path: KeyPath) -> type[BaseModel]:
+    for part in path:
+        if isinstance(part, str):
+            model = submodel(model, part) or model
+    return model
+
+
+def submodel(model: type[BaseModel], key: str) -> type[BaseModel] | None:
+    """The model that a field holds, alone, optional or in a tuple."""
+    pending: list[Any] = [model.model_fields[key].annotation] if key in model.model_fields else []
+    while pending:
+        option = pending.pop()
+        if isinstance(option, type) and issubclass(option, BaseModel):
+            return option
+        pending += get_args(option)
+    return None
