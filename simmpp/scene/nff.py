@@ -1,0 +1,237 @@
+"""Reading and writing scenes in NFF, the Neutral File Format of the SPD (Haines 1987).
+
+An NFF file is a stream of words; line breaks carry no meaning, ``#`` starts a comment. Opaque
+objects are visible from outside; a negative radius, "visible from inside" in NFF, is read as its
+absolute value.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NoReturn
+
+import numpy as np
+
+from simmpp.scene import nff_text
+from simmpp.scene.nff_words import Words
+from simmpp.scene.scene import (
+    Camera,
+    Cone,
+    Light,
+    Material,
+    MeshPart,
+    Polygon,
+    Scene,
+    SceneObject,
+    Sphere,
+    Vector,
+)
+
+MAX_VERTICES = 1_000_000
+"""Largest polygon read; the SPD's largest has 144 vertices."""
+MAX_RESOLUTION = 65536
+WHITE: Vector = (1.0, 1.0, 1.0)
+
+
+def read_nff(text: str, *, name: str, where: str) -> Scene:
+    """The scene of an NFF text.
+
+    ``where`` is the file that errors name. Raises SceneError, with the line, for anything that is
+    not NFF or that no renderer could use; polygons without area are kept, they can't be hit.
+    """
+    return _Reader(Words(text, where)).scene(name)
+
+
+class _Reader:
+    """What has been read so far, one method per NFF keyword."""
+
+    def __init__(self, words: Words) -> None:
+        self.words = words
+        self.camera: Camera | None = None
+        self.background: Vector | None = None
+        self.lights: list[Light] = []
+        self.objects: list[SceneObject] = []
+        self.materials: dict[Material, int] = {}
+        self.material = -1
+        self.read = {
+            "v": self._view,
+            "b": self._background,
+            "l": self._light,
+            "f": self._material,
+            "s": self._sphere,
+            "c": self._cone,
+            "p": self._polygon,
+            "pp": self._patch,
+        }
+
+    def scene(self, name: str) -> Scene:
+        words = self.words
+        while words.left:
+            keyword = words.word()
+            read = self.read.get(keyword)
+            if read is None:
+                known = ", ".join(self.read)
+                words.fail(f"expected a keyword ({known}), got {words.shown(keyword)}")
+            read()
+        if self.camera is None:
+            words.fail("no view: an NFF file needs one 'v'", at_end=True)
+        if not self.objects:
+            words.fail("no objects: expected at least one of s, c, p, pp", at_end=True)
+        return Scene(
+            name=name,
+            objects=tuple(self.objects),
+            materials=tuple(self.materials),
+            lights=tuple(self.lights),
+            camera=self.camera,
+            background=self.background or (0.0, 0.0, 0.0),
+        )
+
+    def _view(self) -> None:
+        if self.camera is not None:
+            self._fail("a second view: an NFF file has one 'v'")
+        words = self.words
+        eye = words.vector("the eye", keyword="from")
+        at = words.vector("the point looked at", keyword="at")
+        up = words.vector("the up vector", keyword="up")
+        words.expect("angle")
+        angle = words.number("the angle of view")
+        if not 0 < angle < 180:
+            self._fail(f"the angle of view must be between 0 and 180 degrees, got {angle:g}")
+        hither, resolution = 0.0, (512, 512)
+        if words.skip("hither"):
+            hither = words.number("the hither distance")
+            if hither < 0:
+                self._fail(f"the hither distance must not be negative, got {hither:g}")
+        if words.skip("resolution"):
+            resolution = self._resolution(), self._resolution()
+        towards = np.subtract(at, eye)
+        sideways = np.linalg.norm(np.cross(towards, up))
+        if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(up):
+            self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
+        self.camera = Camera(eye, at, up, angle, hither, resolution)
+
+    def _resolution(self) -> int:
+        return self.words.count("the resolution", 1, MAX_RESOLUTION)
+
+    def _background(self) -> None:
+        if self.background is not None:
+            self._fail("a second background: an NFF file has one 'b'")
+        self.background = self._colour("the background colour")
+
+    def _light(self) -> None:
+        position = self.words.vector("the position of a light")
+        has_colour = self.words.next_is_number()
+        colour = self._colour("the colour of a light") if has_colour else WHITE
+        self.lights.append(Light(position, colour))
+
+    def _material(self) -> None:
+        colour = self._colour("the colour of a surface")
+        kd, ks, shine, transmittance, ior = self.words.numbers(
+            5, "Kd, Ks, shine, T and index of refraction of a surface"
+        )
+        if min(kd, ks, shine, transmittance, ior) < 0:
+            self._fail("Kd, Ks, shine, T and index of refraction must not be negative")
+        if transmittance > 1:
+            self._fail(f"the transmittance must be at most 1, got {transmittance:g}")
+        if transmittance > 0 and ior == 0:
+            self._fail("a transmitting surface needs an index of refraction above 0")
+        material = Material(colour, kd, ks, shine, transmittance, ior)
+        self.material = self.materials.setdefault(material, len(self.materials))
+
+    def _current_material(self) -> int:
+        """The material of the next object: a default one before the first ``f``."""
+        if self.material < 0:
+            self.material = self.materials.setdefault(Material(), len(self.materials))
+        return self.material
+
+    def _sphere(self) -> None:
+        centre = self.words.vector("the centre of a sphere")
+        radius = abs(self.words.number("the radius of a sphere"))
+        if radius == 0:
+            self._fail("a sphere needs a radius other than 0")
+        self.objects.append(Sphere(centre, radius, self._current_material()))
+
+    def _cone(self) -> None:
+        base = self.words.vector("the base of a cone")
+        base_radius = self.words.number("the base radius of a cone")
+        apex = self.words.vector("the apex of a cone")
+        apex_radius = self.words.number("the apex radius of a cone")
+        if base_radius == 0 and apex_radius == 0:
+            self._fail("a cone needs a radius other than 0 at one end")
+        if base_radius * apex_radius < 0:
+            self._fail("the radii of a cone must have the same sign")
+        if math.dist(base, apex) == 0:
+            self._fail("a cone needs a length: its base and apex are the same point")
+        self.objects.append(
+            Cone(base, abs(base_radius), apex, abs(apex_radius), self._current_material())
+        )
+
+    def _polygon(self) -> None:
+        n = self.words.count("the number of vertices of a polygon", 3, MAX_VERTICES)
+        vertices = np.array(self.words.numbers(3 * n, "a vertex of a polygon")).reshape(n, 3)
+        self.objects.append(Polygon(vertices, None, self._current_material()))
+
+    def _patch(self) -> None:
+        n = self.words.count("the number of vertices of a patch", 3, MAX_VERTICES)
+        rows = np.array(self.words.numbers(6 * n, "a vertex or normal of a patch")).reshape(n, 6)
+        vertices, normals = rows[:, :3].copy(), rows[:, 3:].copy()
+        if not np.all(np.any(normals, axis=1)):
+            self._fail("a vertex normal of a patch has no length")
+        self.objects.append(Polygon(vertices, normals, self._current_material()))
+
+    def _colour(self, what: str) -> Vector:
+        colour = self.words.vector(what)
+        if min(colour) < 0:
+            self._fail(f"{what} must not be negative, got {colour}")
+        return colour
+
+    def _fail(self, problem: str) -> NoReturn:
+        self.words.fail(problem)
+
+
+def write_nff(scene: Scene) -> str:
+    """The scene as NFF text, numbers to six digits; meshes are written triangle by triangle.
+
+    An ``f`` line is written where the material changes, as the SPD's generators do.
+    """
+    camera = scene.camera
+    parts = [
+        nff_text.background(scene.background),
+        nff_text.view(
+            camera.eye, camera.at, camera.up, camera.angle_degrees, camera.hither, camera.resolution
+        ),
+    ]
+    for light in scene.lights:
+        white = light.colour == WHITE
+        parts.append(
+            nff_text.light(light.position)
+            if white
+            else nff_text.coloured_light(light.position, light.colour)
+        )
+    current = -1
+    for item in scene.objects:
+        if item.material != current:
+            current = item.material
+            parts.append(_material_line(scene.materials[current]))
+        parts.append(_object_lines(item))
+    return "".join(parts)
+
+
+def _material_line(m: Material) -> str:
+    return nff_text.material(m.colour, m.kd, m.ks, m.shine, m.transmittance, m.ior)
+
+
+def _object_lines(item: SceneObject) -> str:
+    match item:
+        case Sphere():
+            return nff_text.sphere(item.centre, item.radius)
+        case Cone():
+            return nff_text.cone(item.base, item.base_radius, item.apex, item.apex_radius)
+        case Polygon():
+            vertices = item.vertices.tolist()
+            if item.normals is None:
+                return nff_text.polygon(vertices)
+            return nff_text.patch(vertices, item.normals.tolist())
+        case MeshPart():
+            corners = item.vertices[item.faces].tolist()
+            return "".join(nff_text.polygon(triangle) for triangle in corners)

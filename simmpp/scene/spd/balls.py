@@ -1,0 +1,86 @@
+"""``balls``: the sphereflake, reflecting spheres that carry nine smaller ones each.
+
+Source: Haines 1987; SPD 3.x ``balls.c``.
+"""
+
+from __future__ import annotations
+
+import math
+
+from simmpp.scene import nff_text
+from simmpp.scene.spd.transform import (
+    IDENTITY,
+    SKY_BLUE,
+    Matrix,
+    Vector,
+    rotation_about,
+    rotation_y,
+    rotation_z,
+    transform,
+)
+
+PARALLEL = 0.9999
+"""Cosine from which a direction counts as the z axis itself, as in the SPD."""
+
+
+def objects(size: int) -> int:
+    """Number of objects: spheres of size + 1 generations, and the floor."""
+    return int((9 ** (size + 1) - 1) // 8 + 1)
+
+
+def nff(size: int) -> str:
+    """NFF text of the sphereflake of ``size`` + 1 generations."""
+    parts = [
+        nff_text.background(SKY_BLUE),
+        nff_text.view((2.1, 1.3, 1.7), (0, 0, 0), (0, 0, 1), hither=0.01),
+        *map(nff_text.light, ((4, 3, 2), (1, -4, 4), (-3, 1, 5))),
+        nff_text.material((1, 0.75, 0.33), 0.8, ior=1),
+        nff_text.polygon(((12, 12, -0.5), (-12, 12, -0.5), (-12, -12, -0.5), (12, -12, -0.5))),
+        nff_text.material((1, 0.9, 0.7), 0.5, 0.5, 3.0827, ior=1),
+    ]
+    _flake(size, (0.0, 0.0, 0.0), 0.5, (0.0, 0.0, 1.0), _nine_directions(), parts)
+    return "".join(parts)
+
+
+def _nine_directions() -> list[Vector]:
+    """Where the children of a sphere with direction +z sit."""
+    c = 1 / math.sqrt(2)
+    tilt = rotation_about((c, -c, 0), math.asin(2 / math.sqrt(6)))
+    three = [transform(v, tilt) for v in ((c, c, 0), (c, 0, -c), (0, c, -c))]
+    turns = [rotation_z(k * 2 * math.pi / 3) for k in range(3)]
+    return [transform(v, turn) for turn in turns for v in three]
+
+
+def _from_z_to(direction: Vector) -> Matrix:
+    """The rotation that takes +z to ``direction``."""
+    x, y, z = direction
+    if z >= PARALLEL:
+        return IDENTITY
+    if z <= -PARALLEL:
+        return rotation_y(math.pi)
+    length = math.sqrt(x * x + y * y)
+    return rotation_about((-y / length, x / length, 0), math.acos(z))
+
+
+def _flake(
+    depth: int,
+    centre: Vector,
+    radius: float,
+    direction: Vector,
+    nine: list[Vector],
+    parts: list[str],
+) -> None:
+    parts.append(nff_text.sphere(centre, radius))
+    if depth == 0:
+        return
+    turn = _from_z_to(direction)
+    reach = radius * (4 / 3)
+    for v in nine:
+        dx, dy, dz = transform(v, turn)
+        child = (centre[0] + dx * reach, centre[1] + dy * reach, centre[2] + dz * reach)
+        towards = (
+            (child[0] - centre[0]) / reach,
+            (child[1] - centre[1]) / reach,
+            (child[2] - centre[2]) / reach,
+        )
+        _flake(depth - 1, child, radius * (1 / 3), towards, nine, parts)
