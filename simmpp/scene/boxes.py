@@ -1,0 +1,71 @@
+"""The axis-aligned box of an object: where a ray has to pass for the object to be tested."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, SceneObject, Sphere
+
+
+def box(item: SceneObject) -> Floats:
+    """Exact bounds of an object: (2, 3) float64, low and high corner."""
+    bounds: Floats = boxes([item])[0]
+    return bounds
+
+
+def boxes(items: Sequence[SceneObject]) -> Floats:
+    """Exact bounds of objects: (n, 2, 3) float64, low and high corners."""
+    bounds = np.empty((len(items), 2, 3))
+    spheres = [i for i, item in enumerate(items) if isinstance(item, Sphere)]
+    cones = [i for i, item in enumerate(items) if isinstance(item, Cone)]
+    bounds[spheres] = _sphere_boxes([items[i] for i in spheres])
+    bounds[cones] = _cone_boxes([items[i] for i in cones])
+    flat = [i for i, item in enumerate(items) if isinstance(item, Polygon | MeshPart)]
+    if flat:
+        corners = [_corners(items[i]) for i in flat]
+        starts = np.cumsum([0] + [len(part) for part in corners[:-1]])
+        points = np.concatenate(corners)
+        bounds[flat, 0] = np.minimum.reduceat(points, starts)
+        bounds[flat, 1] = np.maximum.reduceat(points, starts)
+    return bounds
+
+
+def scene_box(items: Sequence[SceneObject]) -> Floats:
+    """Bounds of all objects together: (2, 3) float64; at least one object is needed."""
+    bounds = boxes(items)
+    return np.stack([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
+
+
+def _corners(item: SceneObject) -> Floats:
+    if isinstance(item, MeshPart):
+        return item.vertices[np.unique(item.faces)]
+    if isinstance(item, Polygon):
+        return item.vertices
+    raise TypeError(f"no corners: {item.kind}")
+
+
+def _sphere_boxes(items: Sequence[SceneObject]) -> Floats:
+    rows = [(*s.centre, s.radius) for s in items if isinstance(s, Sphere)]
+    values = np.array(rows).reshape(-1, 4)
+    centre, radius = values[:, :3], np.abs(values[:, 3:])
+    return np.stack([centre - radius, centre + radius], axis=1)
+
+
+def _cone_boxes(items: Sequence[SceneObject]) -> Floats:
+    """Bounds of two discs each: a disc of radius r reaches r sqrt(1 - a_k^2) along axis k.
+
+    1 - a_k^2 is taken from the other two components, so that a disc across an axis has no
+    thickness of rounding.
+    """
+    rows = [(*c.base, c.base_radius, *c.apex, c.apex_radius) for c in items if isinstance(c, Cone)]
+    values = np.array(rows).reshape(-1, 8)
+    base, base_radius, apex, apex_radius = np.split(values, (3, 4, 7), axis=1)
+    along = (apex - base) ** 2
+    across = along[:, [1, 0, 0]] + along[:, [2, 2, 1]]
+    reach = np.sqrt(across / along.sum(axis=1, keepdims=True))
+    base_reach, apex_reach = np.abs(base_radius) * reach, np.abs(apex_radius) * reach
+    low = np.minimum(base - base_reach, apex - apex_reach)
+    high = np.maximum(base + base_reach, apex + apex_reach)
+    return np.stack([low, high], axis=1)
