@@ -1,0 +1,118 @@
+"""Cutting the triangles of a mesh into objects: the grain of everything that moves data.
+
+All cuts depend on the order of the triangles and their positions alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.errors import ConfigError
+from simmpp.scene.scene import Floats
+
+Indices = NDArray[np.int64]
+Cut = Callable[[Floats, Indices], list[Indices]]
+"""Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
+
+
+def cut_named(objects: object) -> tuple[str, Cut]:
+    """Label and cut for the configuration's ``objects``.
+
+    ``nodes`` keeps a scene node whole, ``components`` parts what no vertex joins,
+    ``{clusters: k}`` bisects until no object has more than k triangles.
+    """
+    if objects == "nodes":
+        return "nodes", _whole
+    if objects == "components":
+        return "components", _components
+    if isinstance(objects, Mapping) and set(objects) == {"clusters"}:
+        largest = objects["clusters"]
+        if isinstance(largest, bool) or not isinstance(largest, int) or largest < 1:
+            raise ConfigError(
+                f"objects.clusters: expected a number of triangles of at least 1, got {largest!r}"
+            )
+        return str(largest), lambda vertices, faces: _clusters(vertices, faces, largest)
+    raise ConfigError(f"objects: expected nodes, components or {{clusters: k}}, got {objects!r}")
+
+
+def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
+    """The mesh with equal positions made one vertex, in order of first use by a face.
+
+    File formats repeat a vertex for each normal or texture coordinate; STL for each triangle.
+    """
+    used = vertices[faces.ravel()] + 0.0  # -0.0 becomes 0.0
+    order = np.lexsort(used.T)
+    ordered = used[order]
+    is_new = np.ones(len(order), dtype=np.bool_)
+    is_new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
+    first = order[is_new]  # the sort is stable
+    rank = np.empty_like(first)
+    rank[np.argsort(first)] = np.arange(len(first))
+    index = np.empty_like(order)
+    index[order] = rank[np.cumsum(is_new) - 1]
+    return used[np.sort(first)], index.reshape(faces.shape)
+
+
+def compacted(
+    vertices: Floats, faces: Indices, parts: list[Indices]
+) -> list[tuple[Floats, NDArray[np.int32]]]:
+    """Of each part the vertices that its faces use, in order of index, and its faces into them."""
+    sizes = np.array([len(rows) for rows in parts])
+    part = np.repeat(np.arange(len(parts)), sizes)
+    keys = part[:, None] * len(vertices) + faces[np.concatenate(parts)]
+    used, inverse = np.unique(keys, return_inverse=True)
+    starts = np.searchsorted(used, np.arange(1, len(parts)) * len(vertices))
+    local = inverse.reshape(-1, 3) - np.append(0, starts)[part][:, None]
+    return list(
+        zip(
+            np.split(vertices[used % len(vertices)], starts),
+            np.split(local.astype(np.int32), np.cumsum(sizes)[:-1]),
+            strict=True,
+        )
+    )
+
+
+def _whole(_vertices: Floats, faces: Indices) -> list[Indices]:
+    return [np.arange(len(faces))]
+
+
+def _components(vertices: Floats, faces: Indices) -> list[Indices]:
+    """Faces joined by shared vertices, in the order of each component's first face."""
+    # Slow to import; only meshes need it.
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
+    n = len(vertices)
+    links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))
+    _, labels = connected_components(links, directed=False)
+    label = labels[faces[:, 0]]
+    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))[inverse]
+    order = np.argsort(rank, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(rank[order])) + 1)
+
+
+def _clusters(vertices: Floats, faces: Indices, largest: int) -> list[Indices]:
+    """Recursive bisection of the triangles' centroids on their longest axis.
+
+    Ties between axes: x before y before z; between triangles: their order. Counts split
+    floor(n / 2) : rest.
+    """
+    centroids = vertices[faces].sum(axis=1) / 3
+    done: list[Indices] = []
+    waiting = [np.arange(len(faces))]
+    while waiting:
+        part = waiting.pop()
+        if len(part) <= largest:
+            done.append(np.sort(part))
+            continue
+        points = centroids[part]
+        axis = int(np.argmax(points.max(axis=0) - points.min(axis=0)))
+        part = part[np.argsort(points[:, axis], kind="stable")]
+        half = len(part) // 2
+        waiting += [part[half:], part[:half]]
+    return done
