@@ -1,0 +1,182 @@
+"""From YAML text and ``--set`` to a checked configuration, and what a run needs of it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+from simmpp.errors import ConfigError
+from simmpp.machine.machine import Machine
+from simmpp.machine.presets import machine, torus_shape
+from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
+from simmpp.policy.parameters import LoadInfo, PolicyParameters
+from simmpp.strict import Place, misplaced, structure
+from simmpp.sweep.overrides import Places, override, set_key
+from simmpp.sweep.settings import PolicySettings, Settings
+from simmpp.units import shown
+from simmpp.workload.picture import Picture, Samples
+from simmpp.yamlfile import KeyPath, read_yaml
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked configuration."""
+
+    settings: Settings
+    folder: Path
+    """Where relative scene files are looked for."""
+
+    @property
+    def processors(self) -> int:
+        """Number of PEs."""
+        return self.settings.processors
+
+    @property
+    def scene_spec(self) -> dict[str, object]:
+        """What ``load_scene`` takes, with file names that hold from anywhere."""
+        spec = self.settings.scene.model_dump(exclude_none=True)
+        for key in ("nff", "mesh"):
+            if key in spec:
+                spec[key] = str(self.folder / spec[key])
+        return spec
+
+    @property
+    def picture(self) -> Picture:
+        """What is traced."""
+        chosen = self.settings.picture
+        return Picture(
+            resolution=chosen.resolution,
+            samples=cast(Samples, chosen.samples),
+            max_depth=chosen.max_depth,
+            shadows=chosen.shadows,
+            reflection=chosen.reflection,
+            refraction=chosen.refraction,
+        )
+
+    def machine_for(self, processors: int) -> Machine:
+        """The machine with that many PEs.
+
+        Raises ConfigError if the shape that the configuration gives has another number.
+        """
+        return machine(self.settings.machine.preset, self.settings.machine, processors)
+
+    @property
+    def memory(self) -> Memory:
+        """Memory of one PE."""
+        chosen = self.settings.memory
+        return Memory(
+            fraction=chosen.fraction,
+            bytes=chosen.bytes,
+            residents=cast(Residents, chosen.residents),
+            transient=chosen.transient,
+        )
+
+    @property
+    def placement_rules(self) -> PlacementRules:
+        """How objects and pixels are dealt."""
+        chosen = self.settings.placement
+        return PlacementRules(cast(Owners, chosen.owners), cast(Pixels, chosen.pixels))
+
+    @property
+    def policies(self) -> tuple[PolicyParameters, ...]:
+        """The policies named, in their order."""
+        return tuple(map(_parameters, self.settings.policy))
+
+
+def _parameters(chosen: PolicySettings) -> PolicyParameters:
+    info = chosen.load_info
+    return PolicyParameters(
+        name=chosen.name,
+        label=chosen.label or "",
+        min_load=chosen.min_load,
+        batch=chosen.batch,
+        ask_at_least=chosen.ask_at_least,
+        load_info=cast(LoadInfo, info if isinstance(info, str) else "piggyback"),
+        refresh_ps=None if isinstance(info, str) else info["refresh"],
+        merge_requests=chosen.merge_requests,
+    )
+
+
+def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
+    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+
+    Raises ConfigError, one line with file, line, key, value and what was expected.
+    """
+    document = read_yaml(Path(path))
+    where = document.where
+    if document.data is None:
+        raise ConfigError("the file is empty: expected at least the key 'scene'", where=where)
+    if not isinstance(document.data, dict):
+        raise ConfigError("expected keys with values, such as 'scene: mountain:5'", where=where)
+    places: Places = {key: (where, line) for key, line in document.lines.items()}
+    for assignment in overrides:
+        override(document.data, assignment, places)
+    return _checked(document.data, places, Path(path).parent)
+
+
+def config_from_mapping(mapping: Mapping[str, object]) -> Config:
+    """Check a configuration given as Python data with the keys of the YAML file.
+
+    Raises ConfigError, one line with key, value and what was expected.
+    """
+    if not isinstance(mapping, Mapping):
+        raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
+    return _checked(copy.deepcopy(dict(mapping)), {}, Path())
+
+
+def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
+    """The configuration, once it and all values that are swept are found right."""
+    settings = structure(Settings, data, places)
+    config = Config(settings, _scene_folder(places, folder))
+    for point, point_places in _points(data, settings, places):
+        swept = structure(Settings, point, point_places)
+        try:
+            torus_shape(swept.processors, swept.machine.shape)
+        except ConfigError as error:
+            raise misplaced(("machine", "shape"), error.problem, point_places) from None
+    return config
+
+
+def _points(
+    data: dict[str, Any], settings: Settings, places: Places
+) -> Iterator[tuple[dict[str, Any], Places]]:
+    """The sweep's first point and those one value away from it: each value occurs in one."""
+    axes = settings.sweep
+    base = {path: place for path, place in places.items() if path[:1] != ("sweep",)}
+    first = {key: 0 for key in axes}
+    chosen = [first] + [{**first, key: n} for key in axes for n in range(1, len(axes[key]))]
+    for indices in chosen:
+        point, point_places = copy.deepcopy(data), dict(base)
+        point.pop("sweep", None)
+        for key, n in indices.items():
+            place = _nearest(places, ("sweep", key, n))
+            set_key(point, key, axes[key][n], point_places, place)
+        yield point, point_places
+
+
+def _nearest(places: Places, path: KeyPath) -> Place:
+    known = (path[:n] for n in range(len(path), -1, -1))
+    return next((places[found] for found in known if found in places), ("", None))
+
+
+def _scene_folder(places: Places, folder: Path) -> Path:
+    """Files named in a configuration lie beside it; those named by --set, here."""
+    settings = [_nearest(places, ("scene", key))[0] for key in ("nff", "mesh")]
+    return Path() if any(where.startswith("--set ") for where in settings) else folder
+
+
+def described(config: Config) -> dict[str, Any]:
+    """The configuration with all defaults, as JSON can hold it; shares as text, times in ps."""
+    plain: dict[str, Any] = _plain(config.settings.model_dump())
+    return plain
+
+
+def _plain(value: object) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(child) for key, child in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(child) for child in value]
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)

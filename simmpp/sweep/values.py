@@ -1,0 +1,95 @@
+"""Values of a configuration that are neither a number, a word nor a quantity with a unit.
+
+Each function returns the value checked, or raises ConfigError with what was expected.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from simmpp.errors import ConfigError
+from simmpp.units import picoseconds, share, shown
+
+MOST_RAYS = 2**31 - 1
+"""Rays are numbered by int32."""
+UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds")
+"""Keys that say how a sweep is made, and so can't be swept."""
+MOST_VALUES = 1000
+"""Values of one swept key."""
+AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
+OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
+MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
+LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
+SEEDS = "a list of different integers from 0, such as [0, 1, 2]"
+TOLERANCE = "none, or a share above 0% and below 100%, such as 2%"
+
+
+def objects(value: object) -> str | dict[str, int]:
+    """How a mesh is cut: nodes, components or ``{clusters: k}``."""
+    if value in ("nodes", "components"):
+        return str(value)
+    if isinstance(value, dict) and set(value) == {"clusters"}:
+        count = value["clusters"]
+        if isinstance(count, int) and not isinstance(count, bool) and count >= 1:
+            return {"clusters": count}
+    raise ConfigError(f"value {shown(value)}: expected {OBJECTS}")
+
+
+def min_load(value: object) -> Fraction | int:
+    """A share of n0 / nb (Fraction) or a number of rays (int)."""
+    if isinstance(value, Fraction):
+        return share(value)
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= MOST_RAYS:
+        return value
+    if isinstance(value, str) and value.rstrip().endswith("%"):
+        return share(value)
+    raise ConfigError(f"value {shown(value)}: expected {MIN_LOAD}")
+
+
+def load_info(value: object) -> str | dict[str, int]:
+    """One of the three words, or ``{refresh: picoseconds}``."""
+    if value in ("piggyback", "exact", "none"):
+        return str(value)
+    if isinstance(value, dict) and set(value) == {"refresh"}:
+        try:
+            return {"refresh": picoseconds(value["refresh"])}
+        except ConfigError:
+            pass
+    raise ConfigError(f"value {shown(value)}: expected {LOAD_INFO}")
+
+
+def seeds(value: object) -> tuple[int, ...]:
+    """Different seeds, at least one."""
+    whole = isinstance(value, list | tuple) and all(
+        isinstance(n, int) and not isinstance(n, bool) and 0 <= n < 2**63 for n in value
+    )
+    if not isinstance(value, list | tuple) or not whole or not 0 < len(set(value)) == len(value):
+        raise ConfigError(f"value {shown(value)}: expected {SEEDS}")
+    return tuple(value)
+
+
+def tolerance(value: object) -> Fraction | None:
+    """A share between 0 and 1, or None."""
+    if value in ("none", None):
+        return None
+    try:
+        tolerance = share(value)
+    except ConfigError:
+        tolerance = Fraction(0)
+    if not 0 < tolerance < 1:
+        raise ConfigError(f"value {shown(value)}: expected {TOLERANCE}")
+    return tolerance
+
+
+def axes(value: object) -> object:
+    """Lists of values by dotted key; the keys themselves are checked later."""
+    if not isinstance(value, dict):
+        raise ConfigError(f"value {shown(value)}: expected {AXES}")
+    for key, values in value.items():
+        if key in UNSWEPT:
+            raise ConfigError(f"{key!r} can't be swept")
+        if not isinstance(values, list | tuple) or not 0 < len(values) <= MOST_VALUES:
+            raise ConfigError(
+                f"{key}: value {shown(values)}: expected a list of 1 to {MOST_VALUES} values"
+            )
+    return value
