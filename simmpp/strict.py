@@ -46,9 +46,14 @@ def parsed_by(parse: Callable[[Any], object]) -> BeforeValidator:
         try:
             return parse(value)
         except ConfigError as error:
-            raise PydanticCustomError("simmpp", "{problem}", {"problem": error.problem}) from None
+            raise mistake(error.problem) from None
 
     return BeforeValidator(validate)
+
+
+def mistake(problem: str) -> PydanticCustomError:
+    """What a validator raises; ``problem`` is the rest of the line after the key."""
+    return PydanticCustomError("simmpp", "{problem}", {"problem": problem})
 
 
 def _wrong(value: object, expected: str) -> ConfigError:
@@ -118,16 +123,22 @@ def structure(model: type[Model], data: object, places: Mapping[KeyPath, Place])
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        mistakes = error.errors(include_url=False)
-    raise misplaced(*_mistake(model, mistakes[0]), places)
+        found = error.errors(include_url=False)
+    # an unknown key is often the cause of a missing one
+    first = min(found, key=lambda each: each["type"] != "extra_forbidden")
+    raise _explained(model, first, places)
 
 
-def misplaced(path: KeyPath, problem: str, places: Mapping[KeyPath, Place]) -> ConfigError:
-    """The error for ``path``; ``problem`` follows the key in the line."""
+def misplaced(
+    path: KeyPath, problem: str, places: Mapping[KeyPath, Place], *, within: bool = False
+) -> ConfigError:
+    """The error for the key at ``path``; ``problem`` follows it in the line.
+
+    With ``within`` the problem names the key itself, and what holds it is named before.
+    """
     path = _as_written(path, places)
-    nearest = next((path[:n] for n in range(len(path), -1, -1) if path[:n] in places), ())
-    where, line = places.get(nearest, ("", None))
-    key = dotted(path)
+    where, line = places.get(path, ("", None))
+    key = dotted(path[:-1] if within else path)
     prefix = "" if not key or where == f"--set {key}" else f"{key}: "
     return ConfigError(prefix + problem, where=where, line=line)
 
@@ -143,26 +154,28 @@ def _plain(part: str) -> str:
 
 
 def _as_written(path: KeyPath, places: Mapping[KeyPath, Place]) -> KeyPath:
-    """Without the indices of lists that the user wrote as a single value."""
+    """As far as the user wrote it: short forms have neither the indices nor the last keys."""
     written: KeyPath = ()
     for part in path:
-        if not isinstance(part, int) or not places or (*written, part) in places:
+        if not places or (*written, part) in places:
             written = (*written, part)
     return written
 
 
-def _mistake(model: type[BaseModel], mistake: ErrorDetails) -> tuple[KeyPath, str]:
-    """Path and problem of one of pydantic's errors."""
-    path, kind = tuple(mistake["loc"]), mistake["type"]
+def _explained(
+    model: type[BaseModel], error: ErrorDetails, places: Mapping[KeyPath, Place]
+) -> ConfigError:
+    """The one line for one of pydantic's errors."""
+    path, kind = tuple(error["loc"]), error["type"]
     if kind == "simmpp":
-        return path, mistake["ctx"]["problem"]
+        return misplaced(path, error["ctx"]["problem"], places)
     if kind == "missing":
-        return path[:-1], f"missing key {path[-1]!r}"
+        return misplaced(path[:-1], f"missing key {path[-1]!r}", places)
     if kind == "extra_forbidden":
-        return path[:-1], unknown(str(path[-1]), sorted(_model_at(model, path[:-1]).model_fields))
-    if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return path, f"value {shown(mistake['input'])}: expected a mapping (key: value)"
-    return path, f"value {shown(mistake['input'])}: {mistake['msg']}"
+        known = sorted(_model_at(model, path[:-1]).model_fields)
+        return misplaced(path, unknown(str(path[-1]), known), places, within=True)
+    expected = "a mapping (key: value)" if "model" in kind or "dict" in kind else error["msg"]
+    return misplaced(path, f"value {shown(error['input'])}: expected {expected}", places)
 
 
 def unknown(key: str, known: list[str]) -> str:

@@ -65,17 +65,15 @@ class TestConstants(Strict):
     )
 
 
-def _test(value: object) -> object:
-    """One time for all kinds of primitives is short for the mapping."""
+def long_test(value: object) -> object:
+    """One time for all kinds of primitives as the mapping it is short for."""
     if isinstance(value, dict | TestConstants):
         return value
     try:
-        time_ps = picoseconds(value)
+        picoseconds(value)
     except ConfigError as error:
         raise ConfigError(f"{error.problem}, or a mapping by kind of primitive") from None
-    return TestConstants.model_construct(
-        None, sphere=time_ps, cone=time_ps, polygon=time_ps, mesh=time_ps, per_triangle=0
-    )
+    return dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value) | {"per_triangle": 0}
 
 
 class Constants(Strict):
@@ -102,7 +100,7 @@ class Constants(Strict):
     injection_bandwidth: Bandwidth | None = Field(
         default=None, description="between a PE and its router"
     )
-    test: Annotated[TestConstants, parsed_by(_test)] = Field(
+    test: Annotated[TestConstants, parsed_by(long_test)] = Field(
         default=TestConstants(),
         description="one ray-object intersection: one time, or by kind of primitive",
     )

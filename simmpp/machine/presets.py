@@ -134,7 +134,7 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
         raise ConfigError(f"processors: value {shown(processors)}: expected {expected}")
     if shape is not None and prod(shape) != processors:
         expected = f"three integers whose product is processors = {processors}"
-        raise ConfigError(f"machine.shape: value {list(shape)}: expected {expected}")
+        raise ConfigError(f"value {list(shape)}: expected {expected}")
     return shape or default_shape(processors)
 
 
