@@ -8,8 +8,7 @@ messages that it leaves in the outbox; they know nothing of rays, objects or pol
 
 from __future__ import annotations
 
-from numba import njit
-
+from simmpp.compiled import njit
 from simmpp.engine.dispatch import dispatch
 from simmpp.engine.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.sending import copy_ps, send
@@ -34,7 +33,7 @@ from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 SLEEP = -1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def step(s: State, me: int, phase: int, message: int, now_ps: int) -> int:
     """Act on an instant of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
 
@@ -67,7 +66,7 @@ def step(s: State, me: int, phase: int, message: int, now_ps: int) -> int:
     return next_ps
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def receive(s: State, me: int, message: int, now_ps: int) -> int:
     """Unpack one message and do what it asks for; returns the end of that work."""
     pe, m, setup = s.pes[me], s.messages[message], s.setup[0]
@@ -91,7 +90,7 @@ def receive(s: State, me: int, message: int, now_ps: int) -> int:
     return clock_ps
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _hear(s: State, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
     setup = s.setup[0]
@@ -104,7 +103,7 @@ def _hear(s: State, me: int, source: int, load: int, kind: int, now_ps: int) -> 
             partner.exchanged = 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def compute(s: State, me: int, now_ps: int) -> int:
     """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe, setup = s.pes[me], s.setup[0]
@@ -137,7 +136,7 @@ def compute(s: State, me: int, now_ps: int) -> int:
     return clock_ps
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _test(s: State, me: int, ray: int, tested: int) -> None:
     """One ray-object intersection; what it finds is in the workload."""
     if s.setup[0].record_tests:

@@ -12,20 +12,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import njit
-
+from simmpp.compiled import njit
 from simmpp.engine.sending import send
 from simmpp.engine.state import EXACT, NO_INFO, PIGGYBACK, State
 from simmpp.engine.tables import NONE, find, first, sort_by_key
 from simmpp.engine.waiting import drop_if_idle, set_partner_sendable, set_unasked, withdraw
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
+from simmpp.policy.rules import allows
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def dispatch(s: State, me: int, inbox_empty: bool, now_ps: int) -> int:
     """Send and ask as the policy says; returns the end of the activity."""
     setup, pe = s.setup[0], s.pes[me]
-    nothing_else = pe.n_ready == 0 and inbox_empty
+    nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
     clock_ps = now_ps
     if setup.sends:
         clock_ps = _send_rays(s, me, nothing_else, clock_ps)
@@ -37,8 +37,8 @@ def dispatch(s: State, me: int, inbox_empty: bool, now_ps: int) -> int:
     return clock_ps
 
 
-@njit(cache=True, error_model="numpy")
-def _send_rays(s: State, me: int, nothing_else: bool, now_ps: int) -> int:
+@njit
+def _send_rays(s: State, me: int, nothing_else: int, now_ps: int) -> int:
     setup, pe = s.setup[0], s.pes[me]
     n = _collect_owners(s, me, nothing_else)
     clock_ps = now_ps
@@ -48,7 +48,8 @@ def _send_rays(s: State, me: int, nothing_else: bool, now_ps: int) -> int:
         owner = partner.key % setup.processors
         known_load, age_ps = _known_load(s, partner, owner, clock_ps)
         waiting = partner.sendable
-        if s.rules.may_send(pe.load, known_load, age_ps, waiting, nothing_else, setup.min_load):
+        seen = (pe.load, known_load, age_ps, waiting, nothing_else, setup.min_load)
+        if allows(setup.may_send, seen):
             head, tail = _take_rays(s, me, row)
             pe.load -= waiting
             s.totals[0].rays_sent += waiting
@@ -57,8 +58,8 @@ def _send_rays(s: State, me: int, nothing_else: bool, now_ps: int) -> int:
     return clock_ps
 
 
-@njit(cache=True, error_model="numpy")
-def _collect_owners(s: State, me: int, nothing_else: bool) -> int:
+@njit
+def _collect_owners(s: State, me: int, nothing_else: int) -> int:
     """Partners that rays may be sent to, in ring order from me, into ``s.scratch[1]``."""
     n = 0
     nb = s.setup[0].processors
@@ -73,7 +74,7 @@ def _collect_owners(s: State, me: int, nothing_else: bool) -> int:
     return n
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _known_load(s: State, partner: Any, owner: int, now_ps: int) -> tuple[int, int]:
     """What this PE knows of the owner's load, and how old that is."""
     setup = s.setup[0]
@@ -86,7 +87,7 @@ def _known_load(s: State, partner: Any, owner: int, now_ps: int) -> tuple[int, i
     return partner.load, now_ps - partner.heard_ps
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _take_rays(s: State, me: int, partner: int) -> tuple[int, int]:
     """Unfile all sendable rays of one owner: objects as they became sendable; first and last."""
     head, tail = NONE, NONE
@@ -107,15 +108,15 @@ def _take_rays(s: State, me: int, partner: int) -> tuple[int, int]:
     return head, tail
 
 
-@njit(cache=True, error_model="numpy")
-def _ask_for_objects(s: State, me: int, nothing_else: bool, now_ps: int) -> int:
+@njit
+def _ask_for_objects(s: State, me: int, nothing_else: int, now_ps: int) -> int:
     setup, pe = s.setup[0], s.pes[me]
     n = _collect_wants(s, me, nothing_else)
     clock_ps = now_ps
     for i in range(n):
         row = s.scratch[1, i]
         want = s.wants.rows[row]
-        if s.rules.may_ask(pe.load, want.unasked, nothing_else):
+        if allows(setup.may_ask, (pe.load, want.unasked, nothing_else)):
             wanted = want.key % setup.n_objects
             requests = 1 if setup.merge_requests else want.unasked
             if want.requests == 0:
@@ -128,8 +129,8 @@ def _ask_for_objects(s: State, me: int, nothing_else: bool, now_ps: int) -> int:
     return clock_ps
 
 
-@njit(cache=True, error_model="numpy")
-def _collect_wants(s: State, me: int, nothing_else: bool) -> int:
+@njit
+def _collect_wants(s: State, me: int, nothing_else: int) -> int:
     """Wants that may be asked for, longest waiting first, into ``s.scratch[1]``."""
     n = 0
     for which in range(2 * me if nothing_else else 2 * me + 1, 2 * me + 2):
@@ -143,7 +144,7 @@ def _collect_wants(s: State, me: int, nothing_else: bool) -> int:
     return n
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _refresh_loads(s: State, me: int, now_ps: int) -> int:
     """Tell partners that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from simmpp.compiled import njit
 from simmpp.engine.state import State
 from simmpp.engine.tables import NONE
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def make_ready(s: State, me: int, first: int, last: int, n: int) -> None:
     """Make the linked rays first ... last ready, as a block that keeps its order.
 
@@ -28,7 +27,7 @@ def make_ready(s: State, me: int, first: int, last: int, n: int) -> None:
     pe.n_ready += n
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def pop_ready(s: State, me: int) -> None:
     """Take the first ray out of the ready ones."""
     pe = s.pes[me]
@@ -36,7 +35,7 @@ def pop_ready(s: State, me: int) -> None:
     pe.n_ready -= 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def finish_ray(s: State, me: int, ray: int, now_ps: int) -> None:
     """A ray has made its last test and is shaded: its children become ready here."""
     pe, totals = s.pes[me], s.totals[0]

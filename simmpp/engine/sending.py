@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import njit
-
+from simmpp.compiled import njit
 from simmpp.engine.state import OUTBOX, PACK, State
 from simmpp.engine.tables import NONE, take
 from simmpp.engine.waiting import partner_of
@@ -14,13 +13,13 @@ from simmpp.machine.network import transfer_ps
 from simmpp.machine.torus import hops
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def copy_ps(cost: Any, payload_bytes: int) -> int:
     """Packing or unpacking of one message: fixed + per byte of payload."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def send(
     s: State,
     me: int,
@@ -59,7 +58,7 @@ def send(
     return depart_ps
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def flight_ps(s: State, source: int, destination: int, payload_bytes: int) -> int:
     """From departure to arrival on an uncontended torus."""
     setup = s.setup[0]

@@ -15,6 +15,7 @@ import simpy
 from simpy.events import Event
 
 from simmpp.engine.activities import SLEEP, step
+from simmpp.engine.entry import entry_point
 from simmpp.engine.log import ActivityLog
 from simmpp.engine.state import BEGIN, State, room_for_messages
 from simmpp.engine.tables import NONE
@@ -37,6 +38,7 @@ class SimpyRun:
         self.state = state
         self.arrivals = 0
         self._log, self._progress = log, progress
+        self._step = entry_point(step, state, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
         self._asleep: list[Event | None] = [None] * len(state.pes)
@@ -70,7 +72,7 @@ class SimpyRun:
             message = inbox[0] if inbox else NONE
             if self._log is not None:
                 self._log.about_to_step(state, message)
-            next_ps = step(state, me, phase, message, now_ps)
+            next_ps = self._step(state, me, phase, message, now_ps)
             phase, consumed, n_sent, began, tests, rays_left = state.report.tolist()
             if self._log is not None:
                 self._log.stepped(me, began, tests, n_sent, now_ps, next_ps)

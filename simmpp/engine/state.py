@@ -6,12 +6,12 @@ library ever reaches it.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from simmpp.compiled import njit
 from simmpp.engine.tables import NONE, Lists, Table, new_lists, new_table
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -122,6 +122,8 @@ SETUP = np.dtype(
         ("all_resident", "i8"),
         ("sends", "i8"),
         ("asks", "i8"),
+        ("may_send", "i8"),  # addresses of the policy's rules
+        ("may_ask", "i8"),
         ("min_load", "i8"),
         ("initial_load", "i8"),  # floor(n0 / nb): known of a PE before it is heard
         ("batch", "i8"),
@@ -154,13 +156,6 @@ BEGIN, DISPATCH = 0, 1
 NO_ACTIVITY, RECEIVE, COMPUTE = range(3)
 
 
-class Rules(NamedTuple):
-    """The policy's two compiled rules."""
-
-    may_send: Any
-    may_ask: Any
-
-
 class State(NamedTuple):
     """One run. Arrays of the workload are shared and read-only; the others are the run's own."""
 
@@ -176,7 +171,6 @@ class State(NamedTuple):
     """(1,) SETUP: constants of the run."""
     copy_costs: NDArray[np.void]
     """(2, 4) COPY: PACK and UNPACK of each kind of message."""
-    rules: Rules
     totals: NDArray[np.void]
     """(1,) TOTALS."""
     sent_by_kind: NDArray[np.int64]
@@ -238,7 +232,6 @@ def new_state(
         resident=_resident_bits(placement, n_objects),
         setup=_setup(workload, machine, placement, parameters, policy, ready_order, record_tests),
         copy_costs=_copy_costs(machine),
-        rules=Rules(policy.may_send, policy.may_ask),
         totals=np.zeros(1, TOTALS),
         sent_by_kind=np.zeros(4, np.int64),
         pes=np.zeros(nb, PE),
@@ -282,7 +275,7 @@ def _resident_bits(placement: Placement, n_objects: int) -> NDArray[np.uint8]:
     return bits
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _set_bits(
     bits: NDArray[np.uint8], offsets: NDArray[np.int64], objects: NDArray[np.int32]
 ) -> None:
@@ -327,6 +320,8 @@ def _setup(
         "all_resident": policy.all_resident,
         "sends": policy.sends,
         "asks": policy.asks,
+        "may_send": policy.may_send.address,
+        "may_ask": policy.may_ask.address,
         # A load is an integer: it exceeds a fraction exactly if it exceeds its floor.
         "min_load": min_load if isinstance(min_load, int) else min_load * n0 // nb,
         "initial_load": n0 // nb,
@@ -354,7 +349,7 @@ def _copy_costs(machine: Machine) -> NDArray[np.void]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _deal(s: State, pixel_pes: NDArray[np.int32]) -> None:
     for k in range(s.pes.size):
         s.pes[k].ready_first = NONE

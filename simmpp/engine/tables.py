@@ -10,8 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from simmpp.compiled import njit
 
 NONE = -1
 FREE, USED = 0, 1
@@ -52,14 +53,14 @@ def new_lists(n_lists: int, n_items: int) -> Lists:
     return Lists(np.zeros((n_lists, 2), np.int32), np.zeros((n_items, 2), np.int32))
 
 
-@njit(cache=True, error_model="numpy")
-def _bucket(table: Table, key: int) -> int:
+@njit
+def _bucket(table: Table, key: int) -> np.int64:
     # Fibonacci hashing: the upper bits of key * 2^64 / golden ratio.
     mixed = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
     return np.int64((mixed >> np.uint64(33)) & np.uint64(table.buckets.size - 1))
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def find(table: Table, key: int) -> int:
     """The row of ``key``, or NONE."""
     row = table.buckets[_bucket(table, key)] - 1
@@ -68,7 +69,7 @@ def find(table: Table, key: int) -> int:
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def add(table: Table, key: int) -> int:
     """A new row for ``key``, which must not have one; its other fields are the caller's to set."""
     row = take(table.rows, table.marks)
@@ -79,7 +80,7 @@ def add(table: Table, key: int) -> int:
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def remove(table: Table, row: int) -> None:
     """Forget a row; its place is used again."""
     bucket = _bucket(table, table.rows[row].key)
@@ -93,7 +94,7 @@ def remove(table: Table, row: int) -> None:
     give_back(table.rows, table.marks, row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def take(rows: NDArray[np.void], marks: NDArray[np.int32]) -> int:
     """A free place among ``rows``; freed places are linked through ``chain``."""
     row = marks[FREE]
@@ -107,20 +108,20 @@ def take(rows: NDArray[np.void], marks: NDArray[np.int32]) -> int:
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def give_back(rows: NDArray[np.void], marks: NDArray[np.int32], row: int) -> None:
     """Make a place free again."""
     rows[row].chain = marks[FREE]
     marks[FREE] = row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def first(lists: Lists, which: int) -> int:
     """The first item of list ``which``, or NONE."""
     return lists.ends[which, 0] - 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def append(lists: Lists, which: int, item: int) -> None:
     """Put ``item`` at the end of list ``which``."""
     last = lists.ends[which, 1] - 1
@@ -133,7 +134,7 @@ def append(lists: Lists, which: int, item: int) -> None:
     lists.ends[which, 1] = item + 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def unlink(lists: Lists, which: int, item: int) -> None:
     """Take ``item`` out of list ``which``, wherever it stands."""
     before, after = lists.links[item, 0], lists.links[item, 1]
@@ -147,7 +148,7 @@ def unlink(lists: Lists, which: int, item: int) -> None:
         lists.ends[which, 1] = before + 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def sort_by_key(keys: NDArray[np.int64], items: NDArray[np.int64], n: int) -> None:
     """Sort the first n items by their distinct keys, in place (Shell sort, Ciura's gaps)."""
     for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):

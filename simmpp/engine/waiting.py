@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from simmpp.compiled import njit
 from simmpp.engine.ready import make_ready
 from simmpp.engine.state import State
 from simmpp.engine.tables import NONE, Lists, add, append, find, first, remove, unlink
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def is_in_memory(s: State, me: int, wanted: int) -> bool:
     """Is the object resident, or in transient memory?"""
     if s.owners[wanted] == me or s.setup[0].all_resident:
@@ -22,7 +21,7 @@ def is_in_memory(s: State, me: int, wanted: int) -> bool:
     return want != NONE and s.wants.rows[want].transient == 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def partner_of(s: State, me: int, other: int) -> int:
     """The row of what PE ``me`` knows of PE ``other``."""
     key = me * s.setup[0].processors + other
@@ -38,7 +37,7 @@ def partner_of(s: State, me: int, other: int) -> int:
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def file_ray(s: State, me: int, ray: int, wanted: int) -> None:
     """A ray begins to wait, filed under (object, owner)."""
     row = _want(s, me, wanted)
@@ -60,7 +59,7 @@ def file_ray(s: State, me: int, ray: int, wanted: int) -> None:
         set_unasked(s, me, row, want.unasked + 1)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _want(s: State, me: int, wanted: int) -> int:
     """The row of an object that PE ``me`` lacks or holds for a while."""
     key = me * s.setup[0].n_objects + wanted
@@ -78,7 +77,7 @@ def _want(s: State, me: int, wanted: int) -> int:
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def drop_if_idle(s: State, row: int) -> None:
     """Forget an object that nobody waits for and nobody holds."""
     want = s.wants.rows[row]
@@ -86,7 +85,7 @@ def drop_if_idle(s: State, row: int) -> None:
         remove(s.wants, row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def set_unasked(s: State, me: int, row: int, n: int) -> None:
     """Change the number of rays that no request covers, and the list that shows it."""
     want = s.wants.rows[row]
@@ -96,7 +95,7 @@ def set_unasked(s: State, me: int, row: int, n: int) -> None:
     want.unasked = n
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _set_sendable(s: State, me: int, row: int, added: int) -> None:
     """Waiting rays of an object become sendable; all of its rays before were, or none."""
     if not s.setup[0].sends:
@@ -108,7 +107,7 @@ def _set_sendable(s: State, me: int, row: int, added: int) -> None:
     set_partner_sendable(s, me, want.partner, partner.sendable + added)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def withdraw(s: State, me: int, row: int) -> None:
     """An object has been asked for: its waiting rays can't be sent any more."""
     if not s.setup[0].sends:
@@ -119,7 +118,7 @@ def withdraw(s: State, me: int, row: int) -> None:
     set_partner_sendable(s, me, want.partner, partner.sendable - want.n)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def set_partner_sendable(s: State, me: int, row: int, n: int) -> None:
     """Change the number of rays that may be sent to an owner, and the list that shows it."""
     partner = s.partners.rows[row]
@@ -127,7 +126,7 @@ def set_partner_sendable(s: State, me: int, row: int, n: int) -> None:
     partner.sendable = n
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _move(lists: Lists, me: int, row: int, before: int, after: int, enough: int) -> None:
     """Keep ``row`` in the PE's list of those with some rays (2 me) or enough (2 me + 1)."""
     if before > 0 and after > 0 and (before >= enough) == (after >= enough):
@@ -138,7 +137,7 @@ def _move(lists: Lists, me: int, row: int, before: int, after: int, enough: int)
         append(lists, 2 * me + (1 if after >= enough else 0), row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def admit_object(s: State, me: int, arrived: int) -> None:
     """A fetched object has arrived: rays that wait for it are released for one test each."""
     row = find(s.wants, me * s.setup[0].n_objects + arrived)
@@ -156,7 +155,7 @@ def admit_object(s: State, me: int, arrived: int) -> None:
     drop_if_idle(s, row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _release(s: State, me: int, row: int) -> None:
     """Grant the waiting rays (one, if requests are not merged) their next test."""
     want = s.wants.rows[row]
@@ -175,7 +174,7 @@ def _release(s: State, me: int, row: int) -> None:
     make_ready(s, me, head, tail, n)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def _keep(s: State, me: int, row: int) -> None:
     """Put a fetched object into transient memory; the least recently used one may have to go."""
     pe, want = s.pes[me], s.wants.rows[row]
@@ -196,7 +195,7 @@ def _keep(s: State, me: int, row: int) -> None:
         drop_if_idle(s, oldest)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def touch(s: State, me: int, row: int) -> None:
     """An object in transient memory is used: it becomes the most recent one."""
     if s.wants.rows[row].transient == 1:
@@ -204,7 +203,7 @@ def touch(s: State, me: int, row: int) -> None:
         append(s.recent, me, row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def unpin(s: State, me: int, row: int, tested: int) -> None:
     """A released ray has made the test that the object was pinned for."""
     want = s.wants.rows[row]

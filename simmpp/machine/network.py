@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from numba import njit
+from simmpp.compiled import njit
 
 PS_PER_S = 10**12
 MAX_BYTES_PER_S = 9 * 10**15
 """Fastest bandwidth that ``transfer_ps`` computes without overflow: remainder * 1000 < 2^63."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
     """Time of ``n_bytes`` at ``bytes_per_s``: bytes * 10^12 / bandwidth, halves rounded up.
 

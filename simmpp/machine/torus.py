@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from numba import njit
+from simmpp.compiled import njit
 
 
 def default_shape(processors: int) -> tuple[int, int, int]:
@@ -20,14 +20,14 @@ def default_shape(processors: int) -> tuple[int, int, int]:
     return min(shapes, key=lambda shape: (sum(shape), shape))
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def ring_distance(size: int, a: int, b: int) -> int:
     """Hops from a to b on a ring of ``size`` PEs, the shortest way round."""
     forward = abs(b - a)
     return min(forward, size - forward)
 
 
-@njit(cache=True, error_model="numpy")
+@njit
 def hops(x_size: int, y_size: int, z_size: int, source: int, destination: int) -> int:
     """Links that a message crosses under dimension-order routing; PE k = x + X (y + Y z)."""
     source_row, destination_row = source // x_size, destination // x_size

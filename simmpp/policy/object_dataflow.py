@@ -6,7 +6,7 @@ from simmpp.policy.rules import DataflowPolicy, ask_rule
 
 
 @ask_rule
-def at_once(load: int, waiting: int, nothing_else: bool) -> bool:
+def at_once(load: int, waiting: int, nothing_else: int) -> bool:
     """Ask for every missing object as soon as one ray needs it."""
     return True
 

@@ -7,7 +7,7 @@ from simmpp.policy.rules import DataflowPolicy, send_rule
 
 @send_rule
 def always(
-    load: int, known_load: int, age_ps: int, waiting: int, nothing_else: bool, min_load: int
+    load: int, known_load: int, age_ps: int, waiting: int, nothing_else: int, min_load: int
 ) -> bool:
     """Send every full batch, and all that waits when there is nothing else to do."""
     return True

@@ -1,0 +1,79 @@
+"""How simmpp compiles: numba, IEEE arithmetic as written, kept on disk between runs.
+
+numba notices that a function's own file has changed, but not the files of the functions that it
+calls or of the constants that it reads. So compiled code is kept in a folder named after the source
+of a module and of all that it imports: what is stale is never found.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import TypeVar
+
+import numba
+from platformdirs import user_cache_path
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+_PACKAGE = Path(__file__).parent
+_IMPORT = re.compile(r"^(?:from|import) (simmpp[\w.]*)", re.MULTILINE)
+
+
+def njit(function: Function) -> Function:
+    """Compile ``function`` on first use; no fastmath: results must not depend on the CPU."""
+    numba.config.CACHE_DIR = str(_folder(function.__module__))
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+
+
+def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
+    """Compile a function of that numba signature which compiled code calls by its address."""
+
+    def compile_now(function: Callable[..., object]) -> object:
+        numba.config.CACHE_DIR = str(_folder(function.__module__))
+        return numba.cfunc(signature, cache=True)(function)
+
+    return compile_now
+
+
+def cache_folder() -> Path:
+    """Where workloads and compiled code are kept: SIMMPP_CACHE, XDG_CACHE_HOME or the user's."""
+    chosen, xdg = os.environ.get("SIMMPP_CACHE"), os.environ.get("XDG_CACHE_HOME")
+    if chosen:
+        return Path(chosen)
+    return Path(xdg) / "simmpp" if xdg else user_cache_path("simmpp", appauthor=False)
+
+
+def _folder(module: str) -> Path:
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    root = Path(chosen) if chosen else cache_folder() / "compiled"
+    digest = hashlib.sha256()
+    for name in sorted(_closure(module)):
+        digest.update(_source(name).encode())
+    return root / digest.hexdigest()[:16]
+
+
+def _closure(module: str) -> set[str]:
+    """The module and all modules of this package that it imports, directly or not."""
+    found: set[str] = set()
+    pending = [module]
+    while pending:
+        name = pending.pop()
+        if name not in found:
+            found.add(name)
+            pending.extend(_IMPORT.findall(_source(name)))
+    return found
+
+
+@cache
+def _source(module: str) -> str:
+    """The text of one module; empty where it has no file (an interactive session)."""
+    path = _PACKAGE.joinpath(*module.split(".")[1:])
+    for file in (path.with_suffix(".py"), path / "__init__.py"):
+        if file.is_file():
+            return file.read_text(encoding="utf-8")
+    return ""
