@@ -31,18 +31,21 @@ def load_scene(spec: str | Mapping[str, object] | os.PathLike[str]) -> Scene:
         return _from_mapping(spec)
     if isinstance(spec, os.PathLike):
         return _from_file(Path(spec))
-    if isinstance(spec, str):
+    if isinstance(spec, str) and spec and "\0" not in spec:
         return _from_string(spec)
     raise ConfigError(f"scene: expected a name, a file or a mapping, got {spec!r}")
 
 
 def _from_string(spec: str) -> Scene:
     head, colon, tail = spec.rpartition(":") if ":" in spec else (spec, "", "")
-    if head in generators.known_names() and not Path(spec).is_file():
+    if head in generators.known_names():
         return _generated(head, _size(tail, spec) if colon else None)
-    if colon and not Path(spec).exists() and (Path(head).exists() or Path(head).suffix):
-        return _from_file(Path(head), {"clusters": int(tail)} if tail.isdigit() else tail)
-    if Path(spec).exists() or Path(spec).suffix or os.sep in spec:
+    # os.path answers no where pathlib raises, as for a name that no file can have.
+    if os.path.exists(spec):
+        return _from_file(Path(spec))
+    if colon and (os.path.exists(head) or Path(head).suffix):
+        return _from_file(Path(head), {"clusters": int(tail)} if tail.isdecimal() else tail)
+    if Path(spec).suffix or os.sep in spec:
         return _from_file(Path(spec))
     known = ", ".join(generators.GENERATORS)
     raise ConfigError(f"no scene {spec!r}: no such file, and the generated scenes are {known}")
@@ -92,8 +95,8 @@ def _from_file(path: Path, objects: object = "components") -> Scene:
 def _nff_file(path: Path) -> Scene:
     try:
         data = path.read_bytes()
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
+    except (OSError, ValueError) as error:  # a null byte in the name is a ValueError
+        reason = getattr(error, "strerror", None) or str(error)
         raise SceneError(f"can't read the file: {reason}", where=str(path)) from None
     # Comments may hold anything; the words are checked to be ASCII.
     text = data.decode("utf-8-sig", errors="replace")

@@ -8,7 +8,7 @@ roughness <= 0.3; everything is opaque. Camera and lights of the file are not re
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -42,9 +42,7 @@ class _Node(NamedTuple):
     material: Material
 
 
-def load_mesh(
-    path: str | PathLike[str], *, objects: str | Mapping[str, int] | object = "components"
-) -> Scene:
+def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> Scene:
     """The scene of a mesh file, cut into objects.
 
     ``objects`` is ``nodes``, ``components`` or ``{clusters: k}`` (at most k triangles each); a cut
@@ -110,14 +108,17 @@ def _read(file: Path) -> Any:
     from trimesh.exchange.load import mesh_formats
 
     kind = file.suffix.lower().lstrip(".")
-    known = sorted(mesh_formats())
-    if kind not in known:
-        formats = ", ".join(["nff", *known])
-        raise SceneError(f"unknown kind of file {file.suffix!r}; known: {formats}", where=str(file))
     try:
         with file.open("rb") as opened:
             opened.read(1)
+        if kind not in mesh_formats():
+            known = ", ".join(sorted(mesh_formats()))
+            raise SceneError(
+                f"neither NFF (.nff) nor a mesh that trimesh reads ({known})", where=str(file)
+            )
         return trimesh.load_scene(str(file), process=False, **_options(kind))
+    except SceneError:
+        raise
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise SceneError(f"can't read the file: {reason}", where=str(file)) from None

@@ -1,0 +1,99 @@
+"""What a user may call a scene."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from simmpp.errors import ConfigError, InputError, SceneError
+from simmpp.scene.load import load_scene
+from simmpp.scene.nff import write_nff
+from simmpp.scene.spd.generators import nff
+
+QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "own.nff").write_text(nff("mountain", 1))
+    (tmp_path / "quad.obj").write_text(QUAD)
+    (tmp_path / "tetra").mkdir()
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("spec", "name", "n_objects"),
+    [
+        ("mountain:2", "mountain:2", 36),
+        ("mount:2", "mountain:2", 36),
+        ("jacks", "jacks:1", 9),
+        ("tetra:1", "tetra:1", 4),
+        ("own.nff", "own", 12),
+        ("quad.obj", "quad.obj:components", 1),
+        ("quad.obj:nodes", "quad.obj:nodes", 1),
+        ("quad.obj:1", "quad.obj:1", 2),
+        (Path("own.nff"), "own", 12),
+        ({"spd": "mountain", "size": 2}, "mountain:2", 36),
+        ({"spd": "jacks"}, "jacks:1", 9),
+        ({"nff": "own.nff"}, "own", 12),
+        ({"mesh": "quad.obj"}, "quad.obj:components", 1),
+        ({"mesh": "quad.obj", "objects": {"clusters": 1}}, "quad.obj:1", 2),
+    ],
+)
+def test_specs(
+    files: Path, spec: str | Path | Mapping[str, object], name: str, n_objects: int
+) -> None:
+    scene = load_scene(spec)
+    assert (scene.name, len(scene.objects)) == (name, n_objects)
+
+
+def test_a_generated_scene_is_its_text_read_back(files: Path) -> None:
+    assert write_nff(load_scene("mountain:1")) == write_nff(load_scene("own.nff"))
+
+
+@pytest.mark.parametrize(
+    ("spec", "error", "problem"),
+    [
+        ("foo", ConfigError, "no scene 'foo': no such file, and the generated scenes are balls"),
+        ("foo:3", ConfigError, "no scene 'foo:3'"),
+        ("mountain:", ConfigError, "expected a whole number for the size"),
+        ("mountain:2.5", ConfigError, "expected a whole number for the size"),
+        ("mountain:99", ConfigError, "at most 7, got 99"),
+        ("", ConfigError, "expected a name, a file or a mapping"),
+        ("a\0.nff", ConfigError, "expected a name, a file or a mapping"),
+        (7, ConfigError, "expected a name, a file or a mapping"),
+        ("missing.nff", SceneError, "missing.nff: can't read the file: No such file"),
+        ("missing.glb", SceneError, "missing.glb: can't read the file: No such file"),
+        ("x" * 5000 + ".nff", SceneError, "can't read the file"),
+        (".", SceneError, "can't read the file: Is a directory"),
+        ("quad.obj:lumps", ConfigError, "expected nodes, components or {clusters: k}, got 'lumps'"),
+        ({}, ConfigError, "expected one of the keys spd, nff, mesh"),
+        ({"spd": "tree", "nff": "own.nff"}, ConfigError, "expected one of the keys"),
+        ({"spd": "tree", "sise": 2}, ConfigError, "unknown key 'sise' beside 'spd'; known: size"),
+        ({"spd": "tree", "size": "2"}, ConfigError, "scene.size: expected a whole number, got '2'"),
+        ({"spd": "tree", "size": True}, ConfigError, "scene.size: expected a whole number"),
+        ({"spd": "oak"}, ConfigError, "unknown SPD scene 'oak'; known: balls"),
+        ({"spd": ["tree"]}, ConfigError, "scene.spd: expected a name"),
+        ({"nff": "a\0.nff"}, SceneError, "can't read the file"),
+        ({"mesh": "quad.obj", "objects": {"clusters": 0}}, ConfigError, "objects.clusters"),
+        ({"mesh": "quad.obj", "objects": 3}, ConfigError, "expected nodes, components"),
+    ],
+)
+def test_wrong_specs(files: Path, spec: object, error: type[InputError], problem: str) -> None:
+    with pytest.raises(error) as caught:
+        load_scene(spec)  # type: ignore[arg-type]
+    assert problem in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_binary_files_are_no_nff(tmp_path: Path) -> None:
+    file = tmp_path / "noise.nff"
+    file.write_bytes(bytes(range(256)) * 4)
+    with pytest.raises(SceneError, match=r"noise.nff:1: not an NFF text"):
+        load_scene(file)
+
+
+def test_a_byte_order_mark_and_odd_comments_do_no_harm(tmp_path: Path) -> None:
+    file = tmp_path / "marked.nff"
+    file.write_bytes(b"\xef\xbb\xbf# caf\xe9\r\n" + nff("jacks", 1).encode())
+    assert len(load_scene(file).objects) == 9

@@ -1,0 +1,230 @@
+"""Reading and writing NFF: grammar, round trips, and every way to be wrong."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from simmpp.errors import SceneError
+from simmpp.scene.nff import read_nff, write_nff
+from simmpp.scene.scene import (
+    Camera,
+    Cone,
+    Light,
+    Material,
+    MeshPart,
+    Polygon,
+    Scene,
+    SceneObject,
+    Sphere,
+)
+from simmpp.scene.spd.generators import nff
+
+GOLDEN = sorted((Path(__file__).parents[2] / "golden" / "spd").glob("*.nff"))
+VIEW = "v from 0 0 5 at 0 0 0 up 0 1 0 angle 45\n"
+BALL = "s 0 0 0 1\n"
+
+
+def read(text: str) -> Scene:
+    return read_nff(text, name="test", where="test.nff")
+
+
+def only(text: str) -> SceneObject:
+    (item,) = read(VIEW + text).objects
+    return item
+
+
+@pytest.mark.parametrize("file", GOLDEN, ids=lambda file: file.stem)
+def test_spd_texts_survive_reading_and_writing(file: Path) -> None:
+    """Compared byte for byte: the SPD's spelling is the one that is written."""
+    text = file.read_text()
+    assert write_nff(read(text)) == text
+
+
+@pytest.mark.parametrize("name", ["gears", "lattice", "jacks", "balls"])
+def test_larger_spd_texts_survive_too(name: str) -> None:
+    text = nff(name, 3)
+    assert write_nff(read(text)) == text
+
+
+def test_every_keyword() -> None:
+    scene = read(
+        """
+        b 0.1 0.2 0.3   # background first, as SPD 3.x
+        v from 1 2 3 at 0 0 0 up 0 0 1 angle 30 hither 0.5 resolution 64 32
+        l 1 2 3
+        l 4 5 6 0.5 0.5 0.25
+        f 1 0.5 0 0.7 0.2 10 0.5 1.5
+        s 0 0 0 2
+        c 0 0 0 1
+          0 0 1 0
+        f 1 1 1 1 0 1 0 0
+        p 4  0 0 0  1 0 0  1 1 0  0 1 0
+        pp 3  0 0 0 0 0 1  1 0 0 0 0 1  0 1 0 0 1 1
+        f 1 0.5 0 0.7 0.2 10 0.5 1.5
+        s 1 1 1 -1e-2
+        """
+    )
+    assert scene.background == (0.1, 0.2, 0.3)
+    assert scene.camera == Camera((1, 2, 3), (0, 0, 0), (0, 0, 1), 30, 0.5, (64, 32))
+    assert scene.lights == (Light((1, 2, 3)), Light((4, 5, 6), (0.5, 0.5, 0.25)))
+    assert scene.materials == (
+        Material((1, 0.5, 0), 0.7, 0.2, 10, 0.5, 1.5),
+        Material((1, 1, 1), 1, 0, 1, 0, 0),
+    )
+    sphere, cone, quad, patch, inside = scene.objects
+    assert isinstance(sphere, Sphere) and sphere.radius == 2
+    assert isinstance(cone, Cone) and (cone.base_radius, cone.apex_radius) == (1, 0)
+    assert isinstance(quad, Polygon) and quad.vertices.shape == (4, 3) and quad.normals is None
+    assert isinstance(patch, Polygon) and patch.normals is not None
+    np.testing.assert_array_equal(patch.vertices[1], (1, 0, 0))
+    np.testing.assert_array_equal(patch.normals[2], (0, 1, 1))
+    assert isinstance(inside, Sphere) and inside.radius == 0.01
+    assert [item.material for item in scene.objects] == [0, 0, 1, 1, 0]
+
+
+def test_what_may_be_left_out() -> None:
+    scene = read(BALL + VIEW)
+    assert scene.background == (0, 0, 0)
+    assert scene.lights == ()
+    assert scene.materials == (Material(),)
+    assert scene.camera.hither == 0 and scene.camera.resolution == (512, 512)
+
+
+def test_line_breaks_and_comments_carry_no_meaning() -> None:
+    text = nff("rings", 1)
+    words = "\r\n".join(f"{word} # \xe9 nan _" for word in text.split())
+    assert write_nff(read(words)) == text
+
+
+def test_degenerate_polygons_are_kept() -> None:
+    item = only("p 3 1 1 1 1 1 1 1 1 1")
+    assert isinstance(item, Polygon) and len(item.vertices) == 3
+
+
+def test_meshes_are_written_as_triangles() -> None:
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float64)
+    part = MeshPart(vertices, np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32))
+    camera = Camera((0, 0, 5), (0, 0, 0), (0, 1, 0))
+    again = read(write_nff(Scene("m", (part,), (Material(),), (), camera)))
+    triangles = [item.vertices for item in again.objects if isinstance(item, Polygon)]
+    np.testing.assert_array_equal(triangles, vertices[part.faces])
+
+
+def test_coloured_lights_and_patches_survive() -> None:
+    text = VIEW + "l 1 2 3 1 0.5 0\nf 1 1 1 1 0 1 0 1\npp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 1 1\n"
+    once = write_nff(read(text))
+    assert "l 1 2 3 1 0.5 0\n" in once and "0 1 0 0 1 1\n" in once
+    assert write_nff(read(once)) == once
+
+
+WRONG = [
+    ("s 0 0 0 abc", 2, "expected a number for the radius of a sphere, got 'abc'"),
+    ("s 0 0", 2, "expected a number for the centre of a sphere, but the file ends"),
+    ("s 0 0 0\ns 1", 3, "expected a number for the radius of a sphere, got 's'"),
+    ("s 0 0 0 nan", 2, "expected a finite number of at most 1e"),
+    ("s 0 -inf 0 1", 2, "expected a finite number of at most 1e"),
+    ("s 0 0 1e999 1", 2, "got '1e999'"),
+    ("s 0 0 0 0", 2, "a sphere needs a radius other than 0"),
+    ("s 1_0 0 0 1", 2, "unexpected character '_'"),
+    ("s \u0661 0 0 1", 2, "unexpected character"),
+    ("\x00\x01", 2, "not an NFF text"),
+    ("q 1 2 3", 2, "expected a keyword (v, b, l, f, s, c, p, pp), got 'q'"),
+    ("s 0 0 0 1 7", 2, "got '7'"),
+    ("c 0 0 0 1 0 0 0 1", 2, "a cone needs a length"),
+    ("c 0 0 0 0 0 0 1 0", 2, "a cone needs a radius"),
+    ("c 0 0 0 1 0 0 1 -1", 2, "must have the same sign"),
+    ("p 2 0 0 0 1 1 1", 2, "the number of vertices of a polygon must be from 3 to"),
+    ("p -3", 2, "must be from 3 to"),
+    ("p 3.0 0 0 0", 2, "expected a whole number for the number of vertices of a polygon"),
+    ("p 999999999 0 0 0", 2, "must be from 3 to 1000000"),
+    ("p 9999 0 0 0", 2, "expected a number for a vertex of a polygon, but the file ends"),
+    ("p", 2, "expected a whole number for the number of vertices of a polygon, but the file"),
+    ("pp 3 0 0 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 1", 2, "a vertex normal of a patch has no length"),
+    ("f 1 1 1 1 0 1 0", 2, "index of refraction of a surface, but the file ends"),
+    ("f 1 1 1 -1 0 1 0 0", 2, "must not be negative"),
+    ("f 1 -1 1 1 0 1 0 0", 2, "must not be negative"),
+    ("f 1 1 1 0 0 1 2 1", 2, "the transmittance must be at most 1"),
+    ("f 1 1 1 0 0 1 0.5 0", 2, "needs an index of refraction above 0"),
+    ("b 0 0 0\n\nb 0 0 0", 4, "a second background"),
+    ("l 1 2 3 4", 2, "expected a number for the colour of a light"),
+    ("\n" + VIEW, 3, "a second view"),
+]
+
+
+@pytest.mark.parametrize(("text", "line", "problem"), WRONG, ids=lambda value: str(value)[:30])
+def test_wrong_texts_are_refused_with_their_line(text: str, line: int, problem: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        read(VIEW + text)
+    assert str(caught.value).startswith(f"test.nff:{line}: ")
+    assert problem in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("", "no view"),
+        (BALL, "no view"),
+        (VIEW, "no objects"),
+        ("v at 0 0 0", "expected 'from', got 'at'"),
+        ("v from 0 0 5 at 0 0 0 up 0 1 0 hither 1", "expected 'angle', got 'hither'"),
+        ("v from 0 0 5 at 0 0 0 up 0 1 0 angle 180", "between 0 and 180"),
+        ("v from 0 0 5 at 0 0 5 up 0 1 0 angle 45", "the view needs a direction"),
+        ("v from 0 0 5 at 0 0 0 up 0 0 1 angle 45", "the view needs a direction"),
+        ("v from 0 0 5 at 0 0 0 up 0 0 0 angle 45", "the view needs a direction"),
+        ("v from 0 0 5 at 0 0 0 up 0 1 0 angle 45 hither -1", "must not be negative"),
+        ("v from 0 0 5 at 0 0 0 up 0 1 0 angle 45 resolution 0 9", "the resolution must be"),
+        ("v from 0 0 5 at 0 0 0 up 0 1 0 angle 45 resolution 9", "the resolution, but the file"),
+    ],
+)
+def test_wrong_views_are_refused(text: str, problem: str) -> None:
+    with pytest.raises(SceneError, match="test.nff:1: .*" + problem):
+        read(text)
+
+
+NUMBERS = st.one_of(
+    st.floats(width=32).map(str), st.integers(-3, 9).map(str), st.just("1e31"), st.just("0")
+)
+KEYWORDS = ["b", "v", "l", "f", "s", "c", "p", "pp", "from", "at", "up", "angle", "hither"]
+WORDS = st.one_of(st.sampled_from([*KEYWORDS, "#", "\x00", "\n"]), NUMBERS, st.text(max_size=4))
+ARGUMENTS = [("s", 4), ("c", 8), ("l", 3), ("l", 6), ("f", 8), ("p 3", 9), ("pp 3", 18), ("b", 3)]
+
+
+def line(keyword: str, count: int) -> st.SearchStrategy[str]:
+    """A line that lacks nothing, though its numbers may make no sense."""
+    numbers = st.lists(NUMBERS, min_size=count, max_size=count)
+    return numbers.map(lambda values: f"{keyword} {' '.join(values)}")
+
+
+LINES = st.one_of(
+    st.sampled_from([VIEW, BALL]),
+    st.sampled_from(ARGUMENTS).flatmap(lambda arguments: line(*arguments)),
+    st.lists(WORDS, max_size=4).map(" ".join),
+)
+
+
+@settings(deadline=None)
+@given(st.lists(LINES).map("\n".join))
+def test_any_text_is_a_scene_or_a_scene_error(text: str) -> None:
+    try:
+        scene = read(text)
+    except SceneError as error:
+        assert error.line is not None
+        assert "\n" not in str(error)
+    else:
+        assert len(scene.objects) >= 1
+        assert write_nff(scene)
+
+
+@given(st.lists(st.floats(1e-3, 1e3), min_size=4, max_size=4))
+def test_numbers_are_kept_to_six_digits(values: list[float]) -> None:
+    x, y, z, radius = values
+    sphere = only(f"s {x!r} {y!r} {z!r} {radius!r}")
+    assert isinstance(sphere, Sphere) and sphere.centre == (x, y, z)
+    scene = Scene("s", (sphere,), (Material(),), (), Camera((0, 0, 5), (0, 0, 0), (0, 1, 0)))
+    (again,) = read(write_nff(scene)).objects
+    assert isinstance(again, Sphere)
+    np.testing.assert_allclose((*again.centre, again.radius), values, rtol=5.1e-6)
