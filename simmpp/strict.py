@@ -33,10 +33,9 @@ class Strict(BaseModel):
 
 @dataclass(frozen=True)
 class Expect:
-    """What a key takes, in words, and its unit for the table of keys."""
+    """What a key takes, in words."""
 
     text: str
-    unit: str = ""
 
 
 def parsed_by(parse: Callable[[Any], object]) -> BeforeValidator:
@@ -96,11 +95,9 @@ def _text(value: object) -> str:
     return value
 
 
-Time = Annotated[int, parsed_by(units.picoseconds), Expect(units.A_TIME, "time")]
-Size = Annotated[int, parsed_by(units.byte_count), Expect(units.A_SIZE, "bytes")]
-Bandwidth = Annotated[
-    int, parsed_by(units.bytes_per_second), Expect(units.A_BANDWIDTH, "bytes / time")
-]
+Time = Annotated[int, parsed_by(units.picoseconds), Expect(units.A_TIME)]
+Size = Annotated[int, parsed_by(units.byte_count), Expect(units.A_SIZE)]
+Bandwidth = Annotated[int, parsed_by(units.bytes_per_second), Expect(units.A_BANDWIDTH)]
 Share = Annotated[Fraction, parsed_by(units.share), Expect(units.A_SHARE)]
 Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
 Text = Annotated[str, parsed_by(_text), Expect("a text of one line")]

@@ -25,7 +25,7 @@ def _shape(value: object) -> tuple[int, ...]:
 
 
 _SHAPE = "three positive integers, such as [4, 4, 4]"
-Shape = Annotated[tuple[int, int, int], parsed_by(_shape), Expect(_SHAPE, "PEs")]
+Shape = Annotated[tuple[int, int, int], parsed_by(_shape), Expect(_SHAPE)]
 
 
 Quantum = Annotated[int, *integer(1, 2**31 - 1)]

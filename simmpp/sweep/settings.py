@@ -223,7 +223,7 @@ class Settings(Strict):
     tolerance: Tolerance = Field(
         default=None, description="seeds are added until both profits are known this well"
     )
-    max_seeds: Annotated[int, *integer(1, 100_000)] = Field(
+    max_seeds: Annotated[int, *integer(8, 100_000)] = Field(
         default=64, description="seeds at most per point with a tolerance"
     )
     method: Annotated[str, *one_of("simulate", "analytical", "analytical-measured")] = Field(
@@ -242,7 +242,9 @@ class Settings(Strict):
         titles = [policy.title for policy in policies]
         if not titles:
             raise mistake("expected at least one policy")
-        for title in titles:
-            if titles.count(title) > 1:
-                raise mistake(f"two policies are called {title!r}: expected a label for each")
+        for policy in policies:
+            if titles.count(policy.title) > 1:
+                raise mistake(f"two are called {policy.title!r}: expected a label for each")
+            if policy.title in POLICIES and policy.title != policy.name:
+                raise mistake(f"label {policy.title!r} is the name of another policy")
         return policies

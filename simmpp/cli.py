@@ -1,0 +1,53 @@
+"""The command line: ``simmpp run``, ``machine``, ``scene``; mistakes become one line."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from simmpp.commands.machine import machine_command
+from simmpp.commands.run import run_command
+from simmpp.commands.scene import scene_command
+from simmpp.errors import InputError, ModelError
+
+INPUT_ERROR, MODEL_ERROR, INTERRUPTED = 2, 70, 130
+"""Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT)."""
+
+
+class Commands(click.Group):
+    """The group of commands; whatever simmpp raises on purpose ends it without a traceback."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command named."""
+        try:
+            return super().invoke(ctx)
+        except InputError as error:
+            _quit(f"error: {error}", INPUT_ERROR)
+        except ModelError as error:
+            _quit(f"this is a bug, please report it: {error}", MODEL_ERROR)
+        except KeyboardInterrupt:
+            _quit("interrupted", INTERRUPTED)
+        except MemoryError:
+            _quit("error: out of memory: expected a smaller scene or resolution", INPUT_ERROR)
+
+
+def _quit(message: str, code: int) -> NoReturn:
+    click.echo("simmpp: " + " ".join(message.splitlines()), err=True)
+    sys.exit(code)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="simmpp")
+def main() -> None:
+    """Should rays travel to the objects, or objects to the rays?
+
+    Simulates a parallel machine that traces the real rays of a scene that does not fit into the
+    memory of one of its processing elements (PEs).
+    """
+
+
+main.add_command(run_command)
+main.add_command(machine_command)
+main.add_command(scene_command)

@@ -1,0 +1,150 @@
+"""``simmpp run``: the policies of a configuration at one point, as a table, JSON and a picture."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
+
+    from simmpp.scene.scene import Scene
+    from simmpp.sweep.config import Config
+    from simmpp.sweep.point import Point, PolicyRun
+    from simmpp.workload.workload import Workload
+
+VERIFY_FAILED = 1
+
+
+@click.command("run")
+@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.option("--engine", help="The event loop (see the key engine).")
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.",
+)
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for run.json and results.csv.")
+@click.option("--picture", type=click.Path(path_type=Path), help="Write the picture as PNG.")
+@click.option(
+    "--verify",
+    is_flag=True,
+    help="Make the picture again from the tests that the simulated PEs did, and compare.",
+)
+def run_command(
+    config_path: Path,
+    engine: str | None,
+    overrides: tuple[str, ...],
+    out: Path | None,
+    picture: Path | None,
+    verify: bool,
+) -> None:
+    """Compare dataflow policies on one scene and one machine.
+
+    CONFIG is a YAML file; its keys are listed in the README. Object dataflow is run as the
+    reference of the profits and the replicated scene as the ceiling, if they are not named.
+    """
+    from simmpp.commands.files import folder, writable
+    from simmpp.sweep.config import load_config
+
+    if engine is not None:
+        overrides = (*overrides, f"engine={engine}")
+    config = load_config(config_path, overrides)
+    writable(picture, "--picture")
+    folder(out, "--out")
+    run(config, out=out, picture=picture, verify=verify)
+
+
+def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool) -> None:
+    """Trace, place, simulate, print; what is finished is written even when interrupted."""
+    from simmpp.commands.terminal import output
+    from simmpp.report.summary import summary
+    from simmpp.scene.load import load_scene
+    from simmpp.sweep.point import make_point
+
+    scene = load_scene(config.scene_spec)
+    point = make_point(config, _traced(scene, config))
+    if picture:
+        _write_picture(scene, point, picture)
+    runs: list[PolicyRun] = []
+    try:
+        _simulate(point, runs, record_tests=verify)
+    finally:
+        if out and runs:
+            _write(point, runs, out)
+    output().print(summary(point, runs))
+    if verify:
+        _verify(scene, point, runs)
+
+
+def _traced(scene: Scene, config: Config) -> Workload:
+    """The scene's workload, from the cache or traced with a bar."""
+    from simmpp.commands.terminal import notice, progress_bars
+    from simmpp.workload.store import workload_for
+
+    with progress_bars() as bars:
+        bar = bars.add_task("tracing rays", total=None)
+        return workload_for(
+            scene,
+            config.picture,
+            progress=lambda done, total: bars.update(bar, completed=done, total=total),
+            notice=notice,
+        )
+
+
+def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> None:
+    """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
+    from simmpp.commands.terminal import progress_bars
+    from simmpp.sweep.point import run_point
+
+    n_rays = point.workload.n_rays
+    with progress_bars() as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def progress(title: str, rays_left: int) -> None:
+            if title not in tasks:
+                tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
+            bars.update(tasks[title], completed=n_rays - rays_left)
+
+        runs.extend(run_point(point, record_tests=record_tests, progress=progress))
+
+
+def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
+    from simmpp.report.record import record, write_record
+    from simmpp.sweep.rows import row, write_rows
+
+    write_record(record(point, runs), out / "run.json")
+    write_rows([row(point, run) for run in runs], out / "results.csv")
+
+
+def _write_picture(scene: Scene, point: Point, path: Path) -> None:
+    """The picture that one processor alone would make."""
+    from simmpp.workload.shading import render, save_png
+
+    save_png(render(scene, point.config.picture, point.workload), path)
+
+
+def _verify(scene: Scene, point: Point, runs: list[PolicyRun]) -> None:
+    """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
+    from simmpp.workload.verify import verify
+
+    failed = False
+    for run in runs:
+        result = run.result
+        problem = verify(
+            scene,
+            point.config.picture,
+            point.workload,
+            result.tested_rays,
+            result.tested_objects,
+        )
+        verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
+        click.echo(f"verify {run.parameters.title}: {verdict}")
+        failed = failed or problem is not None
+    if failed:
+        sys.exit(VERIFY_FAILED)

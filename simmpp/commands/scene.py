@@ -1,0 +1,120 @@
+"""``simmpp scene``: what a scene holds, as a list, as NFF, as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from simmpp.units import format_bytes
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from simmpp.scene.scene import Scene
+
+PREVIEW_RESOLUTION = 512
+OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10
+
+
+@click.command("scene")
+@click.argument("spec")
+@click.option("--nff", "nff_path", type=click.Path(path_type=Path), help="Write the scene as NFF.")
+@click.option("--preview", type=click.Path(path_type=Path), help="Write a picture of it as PNG.")
+@click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
+def scene_command(
+    spec: str, nff_path: Path | None, preview: Path | None, all_objects: bool
+) -> None:
+    """List the objects and materials of a scene.
+
+    SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size) or a file: NFF, or a
+    mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
+    """
+    from simmpp.commands.files import writable
+    from simmpp.scene.load import load_scene
+    from simmpp.scene.nff import write_nff
+
+    for path, option in ((nff_path, "--nff"), (preview, "--preview")):
+        writable(path, option)
+    scene = load_scene(spec)
+    _list(scene, None if all_objects else OBJECTS_SHOWN)
+    if nff_path:
+        nff_path.write_text(write_nff(scene), encoding="utf-8", newline="\n")
+    if preview:
+        _preview(scene, preview)
+
+
+def _list(scene: Scene, most_objects: int | None) -> None:
+    """Print counts, camera, lights, materials and objects; the first ones of a long list."""
+    from simmpp.commands.terminal import output
+    from simmpp.scene.describe import describe, object_table
+
+    facts = describe(scene)
+    console = output()
+    console.print("\n".join(_facts(facts)), soft_wrap=True)
+    console.print()
+    console.print(_table(facts["materials"], MATERIALS_SHOWN if most_objects else None))
+    console.print()
+    objects = object_table(scene)
+    rows = objects if most_objects is None else objects.head(most_objects)
+    console.print(_table(rows.to_dict("records"), None))
+    if len(rows) < len(objects):
+        console.print(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
+
+
+def _facts(facts: dict[str, Any]) -> list[str]:
+    """Lines about the scene as a whole."""
+    kinds = ", ".join(f"{count} {kind}s" for kind, count in facts["objects"].items())
+    camera = facts["camera"]
+    lines = [
+        f"{facts['name']}: {facts['n_objects']} objects ({kinds or 'empty'}), "
+        f"{facts['triangles']} triangles, {format_bytes(facts['bytes'])}",
+        f"{facts['reflecting']} reflect, {facts['transmitting']} transmit",
+        f"camera at {_vector(camera['eye'])} towards {_vector(camera['at'])}, "
+        f"up {_vector(camera['up'])}, {camera['angle_degrees']:g} degrees",
+    ]
+    if facts["n_objects"]:
+        low, high = _vector(facts["box"]["low"]), _vector(facts["box"]["high"])
+        lines.append(f"box from {low} to {high}")
+    lines += [f"light at {_vector(light['position'])}" for light in facts["lights"][:LIGHTS_SHOWN]]
+    if len(facts["lights"]) > LIGHTS_SHOWN:
+        lines.append(f"... and {len(facts['lights']) - LIGHTS_SHOWN} more lights")
+    return lines
+
+
+def _vector(vector: list[float]) -> str:
+    return "(" + ", ".join(f"{x:g}" for x in vector) + ")"
+
+
+def _table(rows: list[dict[Any, Any]], most: int | None) -> Table:
+    """Rows as a table; beyond ``most`` only their number."""
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for column in rows[0] if rows else ():
+        table.add_column(str(column), no_wrap=True)
+    for row in rows[:most]:
+        table.add_row(*map(_cell, row.values()))
+    if most is not None and len(rows) > most:
+        table.add_row(f"... {len(rows) - most} more")
+    return table
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:g}"
+    return _vector(value) if isinstance(value, list) else str(value)
+
+
+def _preview(scene: Scene, path: Path) -> None:
+    """The picture of the scene's own camera."""
+    from simmpp.commands.terminal import notice
+    from simmpp.workload.picture import Picture
+    from simmpp.workload.shading import render, save_png
+    from simmpp.workload.store import workload_for
+
+    picture = Picture(resolution=PREVIEW_RESOLUTION)
+    save_png(render(scene, picture, workload_for(scene, picture, notice=notice)), path)

@@ -1,0 +1,133 @@
+"""One point: the policies of a configuration on one workload, one machine and one placement."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from simmpp.engine.result import Result
+from simmpp.engine.simulate import simulate
+from simmpp.errors import ConfigError
+from simmpp.machine.machine import Machine
+from simmpp.placement.place import place
+from simmpp.placement.placement import Placement
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.table import POLICIES
+from simmpp.sweep.config import Config
+from simmpp.workload.workload import Workload
+
+REFERENCE, CEILING = "object", "replicated"
+"""Run with every point: what profits are measured against, and no dataflow at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """What all policies of a point share: the machine, and the placement drawn once."""
+
+    config: Config
+    workload: Workload
+    machine: Machine
+    placement: Placement
+    seed: int
+
+    @property
+    def bound_ps(self) -> int:
+        """Total compute / nb, rounded up: no policy can be faster."""
+        cost_ps = self.machine.test.per_object_ps(
+            self.workload.object_kinds, self.workload.object_triangles
+        )
+        tests_ps = int(cost_ps[self.workload.itinerary_objects].sum())
+        total_ps = tests_ps + self.workload.n_rays * self.machine.ray_ps
+        return -(-total_ps // self.machine.processors)
+
+
+@dataclass(frozen=True, eq=False)
+class PolicyRun:
+    """One policy at one point."""
+
+    parameters: PolicyParameters
+    result: Result
+    named: bool
+    """The configuration names it; otherwise it is there to be compared with."""
+    wall_s: float
+    """Time that the event loop took here."""
+
+    @property
+    def all_resident(self) -> bool:
+        """Every object is in every memory, whatever the fraction."""
+        return POLICIES[self.parameters.name].all_resident
+
+
+def make_point(config: Config, workload: Workload, seed: int | None = None) -> Point:
+    """Draw the placement; ``seed`` is the first of the configuration's by default.
+
+    Raises ConfigError if the memory or the machine's shape does not fit.
+    """
+    if config.settings.method != "simulate":
+        raise ConfigError(f"method: value {config.settings.method!r}: expected simulate here")
+    seed = config.settings.seeds[0] if seed is None else seed
+    machine = config.machine_for(config.processors)
+    placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
+    return Point(config, workload, machine, placement, seed)
+
+
+def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
+    """The policies to run, and whether the configuration names them; the reference comes first."""
+    named = config.policies
+    names = [parameters.name for parameters in named]
+    chosen = [(parameters, True) for parameters in named]
+    chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
+    if REFERENCE not in names:
+        return [(PolicyParameters(REFERENCE), False), *chosen]
+    return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
+
+
+def run_point(
+    point: Point,
+    *,
+    record_tests: bool = False,
+    progress: Callable[[str, int], None] | None = None,
+) -> Iterator[PolicyRun]:
+    """Simulate the policies one after the other, yielding each as it is finished.
+
+    ``progress(title, rays left)`` is called now and then.
+    """
+    for parameters, named in policies_of(point.config):
+        yield _run(point, parameters, named, record_tests, progress)
+
+
+def _run(
+    point: Point,
+    parameters: PolicyParameters,
+    named: bool,
+    record_tests: bool,
+    progress: Callable[[str, int], None] | None,
+) -> PolicyRun:
+    def report(rays_left: int) -> None:
+        if progress is not None:
+            progress(parameters.title, rays_left)
+
+    settings = point.config.settings
+    began_s = time.perf_counter()
+    result = simulate(
+        point.workload,
+        point.machine,
+        point.placement,
+        parameters,
+        engine=settings.engine,
+        ready_order=settings.ready_order,
+        record_tests=record_tests,
+        progress=report,
+    )
+    return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
+
+
+def reference_of(runs: list[PolicyRun]) -> PolicyRun:
+    """The run that profits are measured against."""
+    return next(run for run in runs if run.parameters.name == REFERENCE)
+
+
+def ceiling_of(runs: list[PolicyRun]) -> PolicyRun | None:
+    """The run with the whole scene in every memory, if it is finished."""
+    return next((run for run in runs if run.all_resident), None)
