@@ -7,6 +7,7 @@ so the children of a ray are neighbours, in the order reflected, refracted, shad
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,3 +77,14 @@ class Workload:
     def n_tests(self) -> int:
         """Number of ray-object intersections of the picture."""
         return len(self.itinerary_objects)
+
+
+def frozen(workload: Workload) -> Workload:
+    """The same workload, its arrays read-only and C-contiguous from now on."""
+    arrays = {}
+    for field in dataclasses.fields(workload):
+        value = getattr(workload, field.name)
+        if isinstance(value, np.ndarray):
+            arrays[field.name] = np.ascontiguousarray(value)
+            arrays[field.name].flags.writeable = False
+    return dataclasses.replace(workload, **arrays)

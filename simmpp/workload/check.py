@@ -1,0 +1,103 @@
+"""Does a workload contradict itself? Asked of every file before anything else reads it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.errors import WorkloadError
+from simmpp.workload.workload import OBJECT_KINDS, PRIMARY, RAY_KINDS, SHADOW, Workload
+
+DTYPES = {
+    "kinds": np.uint8,
+    "parents": np.int32,
+    "child_offsets": np.int32,
+    "pixels": np.int32,
+    "hits": np.int32,
+    "hit_distances": np.float64,
+    "itinerary_offsets": np.int64,
+    "itinerary_objects": np.int32,
+    "object_kinds": np.uint8,
+    "object_triangles": np.int32,
+    "object_bytes": np.int64,
+    "object_centroids": np.float64,
+}
+
+
+def check(workload: Workload, where: str) -> None:
+    """Raise WorkloadError, naming ``where``, unless the arrays fit together."""
+    problem = _problem_of_shapes(workload) or _problem_of_rays(workload)
+    problem = problem or _problem_of_itineraries(workload)
+    if problem:
+        raise WorkloadError(problem, where=where)
+
+
+def _problem_of_shapes(workload: Workload) -> str:
+    n, n_objects = workload.n_rays, workload.n_objects
+    lengths = {"child_offsets": n + 1, "itinerary_offsets": n + 1}
+    for name, dtype in DTYPES.items():
+        array = getattr(workload, name)
+        if array.dtype != dtype:
+            return f"{name} is {array.dtype}, expected {np.dtype(dtype)}"
+        if array.ndim != (2 if name == "object_centroids" else 1):
+            return f"{name} has {array.ndim} dimensions"
+        expected = lengths.get(name, n_objects if name.startswith("object_") else n)
+        if name != "itinerary_objects" and len(array) != expected:
+            return f"{name} has {len(array)} entries, expected {expected}"
+    if workload.object_centroids.shape[1] != 3:
+        return f"object_centroids has {workload.object_centroids.shape[1]} columns, expected 3"
+    if min(workload.picture) < 1 or workload.n_primaries > n:
+        return f"picture {workload.picture} does not fit {n} rays"
+    return ""
+
+
+def _problem_of_rays(workload: Workload) -> str:
+    n, first = workload.n_rays, workload.n_primaries
+    numbers = np.arange(n)
+    kinds, parents, pixels = workload.kinds, workload.parents, workload.pixels
+    if (kinds >= len(RAY_KINDS)).any() or ((kinds == PRIMARY) != (numbers < first)).any():
+        return "kinds of rays do not fit the picture"
+    if (parents[:first] != -1).any() or (pixels[:first] != numbers[:first]).any():
+        return "a primary ray has a parent or another's pixel"
+    offsets = workload.child_offsets
+    if not _is_cut(offsets, first, n):
+        return "child_offsets do not cut the rays"
+    if (parents[first:] != np.repeat(numbers, np.diff(offsets))).any():
+        return "parents and child_offsets disagree"
+    if (parents[first:] >= numbers[first:]).any():
+        return "a ray comes before its parent"
+    if (pixels[first:] != pixels[parents[first:]]).any():
+        return "a ray has another pixel than its parent"
+    if (np.diff(offsets)[(kinds == SHADOW) | (workload.hits < 0)] > 0).any():
+        return "a shadow ray, or one that hits nothing, has children"
+    return ""
+
+
+def _problem_of_itineraries(workload: Workload) -> str:
+    offsets, objects, hits = workload.itinerary_offsets, workload.itinerary_objects, workload.hits
+    if not _is_cut(offsets, 0, len(objects)):
+        return "itinerary_offsets do not cut the itineraries"
+    for name, ids, least in (("itinerary_objects", objects, 0), ("hits", hits, -1)):
+        if len(ids) and (ids.min() < least or ids.max() >= workload.n_objects):
+            return f"{name} names an object outside 0 ... {workload.n_objects - 1}"
+    distances = workload.hit_distances
+    if not (np.isfinite(distances) == (hits >= 0)).all() or not (distances >= 0).all():
+        return "hits and hit_distances disagree"
+    if not np.isin(np.flatnonzero(hits >= 0), _rays_that_test_their_hit(workload)).all():
+        return "a ray hits an object that is not in its itinerary"
+    if (workload.object_kinds >= len(OBJECT_KINDS)).any():
+        return "object_kinds has an unknown kind"
+    if (workload.object_bytes < 0).any() or (workload.object_triangles < 0).any():
+        return "an object has a negative size"
+    if not np.isfinite(workload.object_centroids).all():
+        return "object_centroids are not finite"
+    return ""
+
+
+def _is_cut(offsets: NDArray[np.signedinteger], first: int, last: int) -> bool:
+    return bool(offsets[0] == first and offsets[-1] == last and (np.diff(offsets) >= 0).all())
+
+
+def _rays_that_test_their_hit(workload: Workload) -> NDArray[np.int64]:
+    rays = np.repeat(np.arange(workload.n_rays), np.diff(workload.itinerary_offsets))
+    return rays[workload.itinerary_objects == workload.hits[rays]]

@@ -1,0 +1,55 @@
+"""The hash of everything that makes a workload, and so its name in the cache."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from collections.abc import Iterator
+
+import numpy as np
+
+from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
+from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.workload.picture import Picture
+
+WORKLOAD_VERSION = 1
+"""Grows with every change of the algorithm that can change a workload."""
+
+
+def digest_of(scene: Scene, picture: Picture) -> str:
+    """Hexadecimal SHA-256 of geometry, lights, camera, picture and algorithm.
+
+    Of a material only what spawns rays counts; names, colours and the background do not.
+    """
+    digest = hashlib.sha256()
+    for part in _parts(scene, picture):
+        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
+    yield repr((WORKLOAD_VERSION, dataclasses.astuple(picture))).encode()
+    camera = scene.camera
+    yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
+    yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
+    spawned = [(m.reflects, m.transmits, m.ior if m.transmits else 1.0) for m in scene.materials]
+    for thing in scene.objects:
+        yield thing.kind.encode()
+        yield _bytes(bytes_on_the_wire(thing), *spawned[thing.material])
+        yield from _geometry(thing)
+
+
+def _geometry(thing: SceneObject) -> Iterator[bytes]:
+    if isinstance(thing, Sphere):
+        yield _bytes(*thing.centre, thing.radius)
+    elif isinstance(thing, Cone):
+        yield _bytes(*thing.base, thing.base_radius, *thing.apex, thing.apex_radius)
+    else:
+        yield np.asarray(thing.vertices, dtype="<f8").tobytes()
+        if isinstance(thing, MeshPart):
+            yield np.asarray(thing.faces, dtype="<i8").tobytes()
+
+
+def _bytes(*numbers: float) -> bytes:
+    return np.array(numbers, dtype="<f8").tobytes()

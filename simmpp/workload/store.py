@@ -1,0 +1,132 @@
+"""Workloads on disk: one uncompressed npz each, checked when read, kept in the user's cache."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import hashlib
+import os
+import tempfile
+import warnings
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import platformdirs
+
+from simmpp.errors import WorkloadError
+from simmpp.scene.scene import Scene
+from simmpp.workload.check import check
+from simmpp.workload.digest import digest_of
+from simmpp.workload.picture import Picture
+from simmpp.workload.tracer import Progress, trace
+from simmpp.workload.workload import Workload, frozen
+
+TEXTS = ("name", "digest", "picture")
+"""Fields of a workload that are no arrays; they are stored in ``header``."""
+
+
+def workload_for(
+    scene: Scene,
+    picture: Picture,
+    *,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> Workload:
+    """The workload of ``picture``, from the cache if it is there, else traced and stored.
+
+    ``notice`` (default: a warning) is told of a damaged file, which is made again, and of a cache
+    that can't be written, which costs only the next run's time.
+    """
+    tell = notice or (lambda text: warnings.warn(text, stacklevel=3))
+    digest = digest_of(scene, picture)
+    path = cache_directory() / f"{digest}.npz"
+    if path.exists():
+        try:
+            return dataclasses.replace(_expected(load(path), digest, path), name=scene.name)
+        except WorkloadError as error:
+            tell(f"{error}; tracing it again")
+    workload = trace(scene, picture, progress)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save(workload, path)
+    except OSError as error:
+        tell(f"{path.parent}: the workload is not cached: {error.strerror or error}")
+    return workload
+
+
+def cache_directory() -> Path:
+    """``SIMMPP_CACHE``, or the user's cache directory; ``XDG_CACHE_HOME`` counts everywhere."""
+    if os.environ.get("SIMMPP_CACHE"):
+        return Path(os.environ["SIMMPP_CACHE"])
+    if os.environ.get("XDG_CACHE_HOME"):
+        return Path(os.environ["XDG_CACHE_HOME"]) / "simmpp"
+    return Path(platformdirs.user_cache_dir("simmpp", appauthor=False))
+
+
+def save(workload: Workload, path: str | os.PathLike[str]) -> None:
+    """Write ``workload`` to ``path``, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        The file can't be written.
+    """
+    arrays = {name: getattr(workload, name) for name in _array_names()}
+    header = [workload.name, workload.digest, *map(str, workload.picture), _checksum(arrays)]
+    target = Path(path)
+    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, allow_pickle=False, header=np.array(header), **arrays)
+        os.replace(temporary, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def load(path: str | os.PathLike[str]) -> Workload:
+    """Read a workload that :func:`save` has written.
+
+    Raises
+    ------
+    WorkloadError
+        The file can't be read, is damaged, is no workload, or contradicts itself.
+    """
+    where = str(path)
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            header = [str(text) for text in file["header"]]
+            arrays = {name: file[name] for name in _array_names()}
+        name, digest, rows, columns, checksum = header
+        picture = int(rows), int(columns)
+    except (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile) as error:
+        problem = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise WorkloadError(f"not a workload: {problem}", where=where) from None
+    if checksum != _checksum(arrays):
+        raise WorkloadError("damaged: its checksum does not fit", where=where)
+    workload = frozen(Workload(name=name, digest=digest, picture=picture, **arrays))
+    check(workload, where)
+    return workload
+
+
+def _expected(workload: Workload, digest: str, path: Path) -> Workload:
+    if workload.digest != digest:
+        raise WorkloadError("holds the workload of another scene or picture", where=str(path))
+    return workload
+
+
+def _array_names() -> list[str]:
+    return [field.name for field in dataclasses.fields(Workload) if field.name not in TEXTS]
+
+
+def _checksum(arrays: dict[str, np.ndarray]) -> str:
+    """SHA-256 of names, types, shapes and bytes, the same on every byte order."""
+    digest = hashlib.sha256()
+    for name in sorted(arrays):
+        array = np.ascontiguousarray(arrays[name])
+        digest.update(f"{name} {array.dtype.str[1:]} {array.shape}".encode())
+        digest.update(array.astype(array.dtype.newbyteorder("<"), copy=False).data)
+    return digest.hexdigest()

@@ -1,0 +1,155 @@
+"""Traces a picture into a workload: generation by generation, in batches of rays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simmpp.scene.boxes import boxes
+from simmpp.scene.scene import Scene
+from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.workload.candidates import find_itineraries
+from simmpp.workload.digest import digest_of
+from simmpp.workload.geometry import Geometry, flatten
+from simmpp.workload.intersect import Intersector
+from simmpp.workload.normalise import Frame, frame_of
+from simmpp.workload.picture import Picture
+from simmpp.workload.rays import Rays, children, first_generation, joined, spawning
+from simmpp.workload.workload import Workload, frozen
+
+BATCH = 65536
+"""Rays of one batch: bounds the memory of what is only passing through."""
+Progress = Callable[[int, int], None]
+"""Is told the rays done and the rays known so far."""
+
+
+class Batch(NamedTuple):
+    """What is recorded of a run of rays, in workload order."""
+
+    kinds: NDArray[np.uint8]
+    parents: NDArray[np.int32]
+    """Ray numbers; -1 for primary rays."""
+    n_children: NDArray[np.int32]
+    hits: NDArray[np.int32]
+    distances: NDArray[np.float64]
+    """Normalised."""
+    n_tests: NDArray[np.int32]
+    """Lengths of the itineraries."""
+    objects: NDArray[np.int32]
+    """The itineraries, one after the other."""
+
+
+def trace(
+    scene: Scene,
+    picture: Picture,
+    progress: Progress | None = None,
+    intersector: Callable[[Geometry], Intersector] = Intersector,
+) -> Workload:
+    """All rays of ``picture`` with their hits and itineraries.
+
+    Parameters
+    ----------
+    progress : called after each batch with the rays done and the rays known so far
+    intersector : makes the proposals; the workload does not depend on them
+
+    Raises
+    ------
+    SceneError
+        The scene's geometry or camera can't be traced.
+    """
+    frame = frame_of(scene)
+    geometry = flatten(scene, frame)
+    rules = spawning(scene, picture, frame, geometry)
+    rays = first_generation(scene, picture, frame)
+    proposer = intersector(geometry)
+    batches: list[Batch] = []
+    start = depth = 0
+    while len(rays.kinds):
+        depth += 1
+        end = start + len(rays.kinds)
+        spawned = []
+        for low in range(start, end, BATCH):
+            part = rays.part(low - start, low - start + BATCH)
+            hits, distances, n_tests, objects = _intersected(geometry, proposer, part)
+            young, n_children = children(geometry, part, hits, distances, rules, depth, low)
+            spawned.append(young)
+            batches.append(
+                Batch(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
+            )
+            if progress:
+                progress(low + len(part.kinds), end + sum(len(young.kinds) for young in spawned))
+        start, rays = end, joined(spawned)
+    return _workload(scene, picture, geometry, frame, batches)
+
+
+def _intersected(
+    geometry: Geometry, proposer: Intersector, rays: Rays
+) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    """Hits, normalised distances, lengths of the itineraries, and the itineraries of a batch."""
+    claims = proposer.claims(rays.origins, rays.directions)
+    hits, distances, n_tests, objects = find_itineraries(
+        geometry.shapes,
+        geometry.boxes,
+        rays.origins,
+        rays.directions,
+        rays.kinds,
+        rays.limits,
+        rays.sources,
+        claims,
+    )
+    return hits, distances, n_tests, objects
+
+
+def _workload(
+    scene: Scene,
+    picture: Picture,
+    geometry: Geometry,
+    frame: Frame,
+    batches: list[Batch],
+) -> Workload:
+    kinds, parents, n_children, hits, distances, n_tests, objects = (
+        np.concatenate(column) for column in zip(*batches, strict=True)
+    )
+    rows, columns = picture.shape
+    bounds = boxes(scene.objects)
+    return frozen(
+        Workload(
+            name=scene.name,
+            digest=digest_of(scene, picture),
+            picture=picture.shape,
+            kinds=kinds,
+            parents=parents,
+            child_offsets=_offsets(n_children, rows * columns, np.int32),
+            pixels=pixels_of(parents),
+            hits=hits,
+            hit_distances=frame.scene_lengths(distances),
+            itinerary_offsets=_offsets(n_tests, 0, np.int64),
+            itinerary_objects=objects,
+            object_kinds=geometry.kinds,
+            object_triangles=geometry.n_triangles,
+            object_bytes=np.array([bytes_on_the_wire(item) for item in scene.objects], np.int64),
+            object_centroids=np.ascontiguousarray(bounds.mean(axis=1)),
+        )
+    )
+
+
+def _offsets(counts: NDArray[np.int32], first: int, dtype: type[np.signedinteger]) -> NDArray:
+    """(n + 1,) where each run of ``counts`` begins, and where the last one ends."""
+    offsets = np.empty(len(counts) + 1, dtype=dtype)
+    offsets[0] = first
+    np.cumsum(counts, out=offsets[1:])
+    offsets[1:] += dtype(first)
+    return offsets
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def pixels_of(parents):
+    """The primary ray at the root of each ray's tree, (n,) int32."""
+    pixels = np.empty(len(parents), np.int32)
+    for i in range(len(parents)):
+        pixels[i] = i if parents[i] < 0 else pixels[parents[i]]
+    return pixels
