@@ -24,9 +24,9 @@ _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
 def override(data: dict[str, Any], assignment: str, places: Places) -> None:
     """Apply one ``--set KEY=VALUE``; the value is read as YAML."""
     key, equals, text = assignment.partition("=")
-    where = f"--set {key}"
+    where = "--set " + " ".join(key.split())
     if not equals or not key:
-        raise ConfigError("expected KEY=VALUE, such as processors=8", where=f"--set {assignment}")
+        raise ConfigError("expected KEY=VALUE, such as processors=8", where=where)
     try:
         value = parse_yaml(text).data
     except ConfigError as error:

@@ -88,8 +88,9 @@ def axes(value: object) -> object:
     for key, values in value.items():
         if key in UNSWEPT:
             raise ConfigError(f"{key!r} can't be swept")
+        name = key if isinstance(key, str) and key.isprintable() else repr(key)
         if not isinstance(values, list | tuple) or not 0 < len(values) <= MOST_VALUES:
             raise ConfigError(
-                f"{key}: value {shown(values)}: expected a list of 1 to {MOST_VALUES} values"
+                f"{name}: value {shown(values)}: expected a list of 1 to {MOST_VALUES} values"
             )
     return value
