@@ -43,7 +43,7 @@ def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
 
     File formats repeat a vertex for each normal or texture coordinate; STL for each triangle.
     """
-    used = vertices[faces.ravel()] + 0.0  # -0.0 becomes 0.0
+    used = vertices[faces.ravel()]
     order = np.lexsort(used.T)
     ordered = used[order]
     is_new = np.ones(len(order), dtype=np.bool_)

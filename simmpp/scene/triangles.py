@@ -82,10 +82,8 @@ def _turn(a: Pair, b: Pair, c: Pair) -> float:
 
 
 def _is_convex(flat: list[Pair]) -> bool:
-    """All corners turn one way, and so does the fan (a pentagram's does not)."""
-    n, first = len(flat), flat[0]
-    turns = [_turn(flat[i - 2], flat[i - 1], flat[i]) for i in range(n)]
-    turns += [_turn(first, b, c) for b, c in pairwise(flat[1:])]
+    """All corners turn one way."""
+    turns = [_turn(flat[i - 2], flat[i - 1], flat[i]) for i in range(len(flat))]
     return min(turns) >= 0 or max(turns) <= 0
 
 

@@ -22,6 +22,11 @@ def test_description_of_the_smallest_mountain() -> None:
     assert json.loads(json.dumps(found)) == found
 
 
+def test_reflecting_is_not_transmitting() -> None:
+    found = describe(load_scene("rings:1"))
+    assert (found["reflecting"], found["transmitting"]) == (60, 0)
+
+
 def test_table_has_a_row_per_object() -> None:
     scene = load_scene("gears:1")
     table = object_table(scene)

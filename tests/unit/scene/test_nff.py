@@ -125,6 +125,7 @@ WRONG = [
     ("s 0 0", 2, "expected a number for the centre of a sphere, but the file ends"),
     ("s 0 0 0\ns 1", 3, "expected a number for the radius of a sphere, got 's'"),
     ("s 0 0 0 nan", 2, "expected a finite number of at most 1e"),
+    ("s 0 nan 0 1", 2, "got 'nan'"),
     ("s 0 -inf 0 1", 2, "expected a finite number of at most 1e"),
     ("s 0 0 1e999 1", 2, "got '1e999'"),
     ("s 0 0 0 0", 2, "a sphere needs a radius other than 0"),
