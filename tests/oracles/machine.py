@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from oracles.costs import copy_ps, intersection_ps, network_ps
-from oracles.rules import ASKS, SENDS, View, enough_to_ask, may_send, sends_refresh
+from oracles.rules import RULES, Rule, Rules, View, minimum_load
 from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -44,8 +44,8 @@ class Outcome:
     """(time, destination, source, send number, message kind, payload bytes)."""
     activities: list[tuple[int, int, str, int, int]]
     """(begin, PE, "receive <kind>" or "compute", end, tests)."""
-    tested: list[list[tuple[int, int]]]
-    """By PE: (ray, object) in the order performed."""
+    tested: list[tuple[int, int]]
+    """(ray, object) in the order performed: by the beginnings of the computes."""
 
 
 @dataclass
@@ -55,6 +55,7 @@ class _Simulation:
     placement: Placement
     policy: PolicyParameters
     ready_order: str
+    rules: Rules
     heap: list[tuple[Any, ...]] = field(default_factory=list)
     sent: list[Message] = field(default_factory=list)
     received: int = 0
@@ -75,7 +76,7 @@ class _Simulation:
         objects = [int(o) for o in self.workload.itinerary_objects]
         self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
         self.positions = [0] * self.workload.n_rays
-        self.tested: list[list[tuple[int, int]]] = [[] for _ in range(self.nb)]
+        self.tested: list[tuple[int, int]] = []
         self.current: dict[int, tuple[int, str, int]] = {}
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         for pe in self.pes:
@@ -136,9 +137,9 @@ class _Simulation:
             work_end = self.receive(time, pe, message)
             self.current[pe.number] = (time, f"receive {MESSAGE_KINDS[message.kind]}", 0)
         elif pe.ready:
-            tests_before = len(self.tested[pe.number])
+            tests_before = len(self.tested)
             work_end = self.compute(time, pe)
-            n_tests = len(self.tested[pe.number]) - tests_before
+            n_tests = len(self.tested) - tests_before
             self.current[pe.number] = (time, "compute", n_tests)
         else:
             pe.asleep = True
@@ -158,6 +159,7 @@ class _Simulation:
         clock = self.pay("communication", pe, time, cost)
         self.received += 1
         pe.known_load[message.source] = Fraction(message.load)
+        pe.heard[message.source] = clock
         if message.kind in (OBJECT, RAYS):
             pe.partners.add(message.source)
         if message.kind == REQUEST:
@@ -208,7 +210,7 @@ class _Simulation:
         return clock
 
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
-        self.tested[pe.number].append((ray, obj))
+        self.tested.append((ray, obj))
         self.positions[ray] += 1
         pe.granted.discard(ray)
         pe.use(obj)
@@ -230,11 +232,11 @@ class _Simulation:
         nothing_else = not pe.ready and not pe.inbox
         messages_before = len(self.sent)
         clock = time
-        if SENDS[self.policy.name]:
-            clock = self.send_rays(clock, pe, nothing_else)
-        if ASKS[self.policy.name]:
-            clock = self.ask(clock, pe, nothing_else)
-        if sends_refresh(self.policy) and pe.refresh_allowed:
+        if self.rules.may_send:
+            clock = self.send_rays(clock, pe, nothing_else, self.rules.may_send)
+        if self.rules.may_ask:
+            clock = self.ask(clock, pe, nothing_else, self.rules.may_ask)
+        if self.policy.load_info == "piggyback" and pe.refresh_allowed:
             clock = self.refresh(clock, pe)
         self.end_activity(pe, clock)
         if len(self.sent) > messages_before:
@@ -251,20 +253,27 @@ class _Simulation:
         by_age = sorted(objects, key=lambda o: pe.sendable_since[o])
         return [ray for o in by_age for ray in pe.rays_of(o)]
 
-    def send_rays(self, clock: int, pe: PE, nothing_else: bool) -> int:
+    def send_rays(self, clock: int, pe: PE, nothing_else: bool, may_send: Rule) -> int:
+        minimum = minimum_load(self.policy, self.workload.n_primaries, self.nb)
         for owner in self.others(pe):
             rays = self.sendable(pe, owner)
             if not rays or not (len(rays) >= self.policy.batch or nothing_else):
                 continue
-            known: Fraction | int = pe.known_load[owner]
-            if self.policy.load_info == "exact":
-                known = self.pes[owner].ended_load
-            if not may_send(self.policy, View(pe.load, known, self.workload.n_primaries, self.nb)):
+            known, age = self.known_load(clock, pe, owner)
+            if not may_send(View(pe.load, len(rays), nothing_else, minimum, known, age)):
                 continue
             pe.unfile(rays)
             size = len(rays) * self.machine.ray_bytes
             clock = self.send(clock, pe, RAYS, owner, size, rays=tuple(rays))
         return clock
+
+    def known_load(self, clock: int, pe: PE, owner: int) -> tuple[Fraction | None, int]:
+        """What a PE knows of the owner's load, and for how long it has."""
+        if self.policy.load_info == "none":
+            return None, clock
+        if self.policy.load_info == "exact":
+            return Fraction(self.pes[owner].ended_load), 0
+        return pe.known_load[owner], clock - pe.heard[owner]
 
     def unasked(self, pe: PE, obj: int) -> list[tuple[int, int, int]]:
         """Entries of the wait file that no request in flight will serve."""
@@ -273,10 +282,12 @@ class _Simulation:
             return [] if pe.in_flight[obj] else entries
         return entries[pe.in_flight[obj] :]
 
-    def ask(self, clock: int, pe: PE, nothing_else: bool) -> int:
+    def ask(self, clock: int, pe: PE, nothing_else: bool, may_ask: Rule) -> int:
+        at_least = self.rules.ask_at_least or self.policy.ask_at_least
         oldest = {o: self.unasked(pe, o) for o in {o for _, o, _ in pe.waiting}}
         for obj in sorted((o for o in oldest if oldest[o]), key=lambda o: oldest[o][0]):
-            if not enough_to_ask(self.policy, len(oldest[obj]), nothing_else):
+            n = len(oldest[obj])
+            if not (n >= at_least or nothing_else) or not may_ask(View(pe.load, n, nothing_else)):
                 continue
             for _ in oldest[obj][:1] if self.policy.merge_requests else oldest[obj]:
                 size = self.machine.request_bytes
@@ -285,6 +296,8 @@ class _Simulation:
         return clock
 
     def refresh(self, clock: int, pe: PE) -> int:
+        if self.policy.refresh_ps is None:
+            return clock
         for other in self.others(pe):
             silence = clock - pe.last_departure[other]
             if other in pe.partners and silence >= self.policy.refresh_ps:
@@ -355,8 +368,11 @@ class _Simulation:
             time, *_ = self.current[number]
             ends = [to for _, pe, since, to in self.spans if pe == number and since >= time]
             self.end_activity(self.pes[number], max(ends))
+        activities = [
+            (t, pe, kind, min(to, self.makespan), n) for t, pe, kind, to, n in self.activities
+        ]
         sent = [m for m in self.sent if m.departure <= self.makespan]
-        rules = {"send": (SENDS, RAYS), "ask": (ASKS, REQUEST)}
+        rules = {"send": (self.rules.may_send, RAYS), "ask": (self.rules.may_ask, REQUEST)}
         compute = [self.account("compute", k) for k in range(self.nb)]
         communication = [self.account("communication", k) for k in range(self.nb)]
         return Outcome(
@@ -365,7 +381,7 @@ class _Simulation:
             messages_received=self.received,
             bytes_sent=sum(m.payload_bytes + self.machine.header_bytes for m in sent),
             rays=self.workload.n_rays - self.rays_left,
-            tests=sum(len(tests) for tests in self.tested),
+            tests=len(self.tested),
             rays_sent=sum(len(m.rays) for m in sent),
             compute_ps=compute,
             communication_ps=communication,
@@ -375,11 +391,11 @@ class _Simulation:
             events=len(self.activities) + len(self.arrivals),
             rules_never_fired=tuple(
                 rule
-                for rule, (has, kind) in rules.items()
-                if has[self.policy.name] and not any(m.kind == kind for m in sent)
+                for rule, (exists, kind) in rules.items()
+                if exists and not any(m.kind == kind for m in sent)
             ),
             arrivals=sorted(self.arrivals),
-            activities=sorted(self.activities, key=lambda row: row[:2]),
+            activities=sorted(activities, key=lambda row: row[:2]),
             tested=self.tested,
         )
 
@@ -390,8 +406,10 @@ def simulate(
     placement: Placement,
     policy: PolicyParameters,
     ready_order: str = "depth-first",
+    rules: Rules | None = None,
 ) -> Outcome:
-    """Run a workload on a machine under a policy, without network contention."""
-    simulation = _Simulation(workload, machine, placement, policy, ready_order)
+    """Run a workload on a machine without network contention, under a policy or other rules."""
+    rules = rules or RULES[policy.name]
+    simulation = _Simulation(workload, machine, placement, policy, ready_order, rules)
     simulation.run()
     return simulation.outcome()

@@ -2,45 +2,62 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
 
 from simmpp.policy.parameters import PolicyParameters
-
-SENDS = {"object": False, "ray": True, "concurrent": True, "replicated": False}
-ASKS = {"object": True, "ray": False, "concurrent": True, "replicated": False}
 
 
 @dataclass(frozen=True)
 class View:
-    """What a PE knows of PE j, or of an object, when it decides."""
+    """What a PE knows when it decides about PE j, or about an object."""
 
     load: int
-    load_of_j: Fraction | int
-    n_primaries: int
-    processors: int
+    waiting: int
+    """Rays that could be sent to PE j, or that no request for the object covers."""
+    nothing_else: bool
+    min_load: Fraction = Fraction(0)
+    """In rays."""
+    known_load: Fraction | None = None
+    """Of PE j; None with load_info none."""
+    age_ps: int = 0
+    """Time since that was heard."""
 
 
-def may_send(policy: PolicyParameters, view: View) -> bool:
-    """Whether the rays that wait for PE j's objects may go there."""
-    if policy.name == "ray":
-        return True
-    minimum: Fraction | int = policy.min_load
-    if isinstance(minimum, Fraction):
-        minimum = minimum * Fraction(view.n_primaries, view.processors)
-    if not view.load > minimum:
-        return False
-    return policy.load_info == "none" or view.load > view.load_of_j
+Rule = Callable[[View], bool]
 
 
-def enough_to_ask(policy: PolicyParameters, unasked: int, nothing_else: bool) -> bool:
-    """Whether an object may be asked for that so many rays need."""
-    at_least = 1 if policy.name == "object" else policy.ask_at_least
-    return unasked >= at_least or nothing_else
+@dataclass(frozen=True)
+class Rules:
+    """A policy; None is a rule that it does not have."""
+
+    may_send: Rule | None = None
+    may_ask: Rule | None = None
+    ask_at_least: int | None = None
+    """Fixed number of rays that is enough to ask; None: the parameter."""
 
 
-def sends_refresh(policy: PolicyParameters) -> bool:
-    """Whether PEs that were not written to for long are told the load."""
-    knows: Literal["piggyback", "exact", "none"] = policy.load_info
-    return policy.name == "concurrent" and knows == "piggyback" and policy.refresh_ps is not None
+def always(view: View) -> bool:
+    """Whenever a batch is full or there is nothing else to do."""
+    return True
+
+
+def to_the_less_loaded(view: View) -> bool:
+    """The paper's rule of concurrent dataflow."""
+    return view.load > view.min_load and (view.known_load is None or view.load > view.known_load)
+
+
+RULES = {
+    "object": Rules(may_ask=always, ask_at_least=1),
+    "ray": Rules(may_send=always),
+    "concurrent": Rules(may_send=to_the_less_loaded, may_ask=always),
+    "replicated": Rules(),
+}
+
+
+def minimum_load(policy: PolicyParameters, n_primaries: int, processors: int) -> Fraction:
+    """The minimal load in rays: a share of n0 / nb, or a count as it is."""
+    if isinstance(policy.min_load, Fraction):
+        return policy.min_load * Fraction(n_primaries, processors)
+    return Fraction(policy.min_load)

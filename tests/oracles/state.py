@@ -33,6 +33,8 @@ class PE:
     ready: list[int]
     """Rays, the front one first."""
     known_load: list[Fraction]
+    heard: Counter[int] = field(default_factory=Counter)
+    """PE: when its load was heard last; 0 if never."""
     waiting: list[tuple[int, int, int]] = field(default_factory=list)
     """(rank of beginning to wait, object, ray), the oldest first."""
     in_flight: Counter[int] = field(default_factory=Counter)
