@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.state import NO_ACTIVITY, RECEIVE, State
-from simmpp.engine.tables import NONE
+from simmpp.engine.layout import NO_ACTIVITY, NONE, RECEIVE
+from simmpp.engine.state import State
 
 ARRIVAL = 0
 EVENT_KINDS = ("arrival", "receive", "compute")

@@ -16,9 +16,9 @@ from simpy.events import Event
 
 from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.entry import entry_point
+from simmpp.engine.layout import BEGIN, NONE
 from simmpp.engine.log import ActivityLog
-from simmpp.engine.state import BEGIN, State, room_for_messages
-from simmpp.engine.tables import NONE
+from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
 _FIRST = -1  # priority before all others of its instant
@@ -38,7 +38,7 @@ class SimpyRun:
         self.state = state
         self.arrivals = 0
         self._log, self._progress = log, progress
-        self._step = entry_point(step, state, 0, 0, 0, 0)
+        self._step = entry_point(step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
         self._asleep: list[Event | None] = [None] * len(state.pes)
@@ -46,41 +46,41 @@ class SimpyRun:
         self._end = _happened(self._environment)
         self._ending = False
 
-    def run(self) -> State:
-        """Run until no ray is left; returns the final state.
+    def run(self) -> None:
+        """Run until no ray is left.
 
         Raises ModelError if rays are left and nothing is scheduled.
         """
-        if self.state.totals["rays_left"][0] == 0:
-            return self.state
+        if self.state["rays_left"] == 0:
+            return
         for me in range(len(self._inboxes)):
             self._environment.process(self._processing_element(me))
         while self._environment.peek() != simpy.core.Infinity and not self._end.processed:
             self._environment.step()
         if not self._ending:
             raise ModelError(starved(self.state))
-        return self.state
 
     def _processing_element(self, me: int) -> Generator[Event, None, None]:
         """One PE: a step at each of its instants, asleep between them."""
-        environment, inbox = self._environment, self._inboxes[me]
+        environment, inbox, state = self._environment, self._inboxes[me], self.state
+        step, runs = self._step, state.runs
         phase = BEGIN
         yield self._instant(me, 0)
         while True:
-            self.state = state = room_for_messages(self.state)
+            state.ensure_room()
             now_ps = environment.now
             message = inbox[0] if inbox else NONE
             if self._log is not None:
                 self._log.about_to_step(state, message)
-            next_ps = self._step(state, me, phase, message, now_ps)
-            phase, consumed, n_sent, began, tests, rays_left = state.report.tolist()
+            next_ps = step(runs, me, phase, message, now_ps)
+            phase, consumed, n_sent, began, tests = state.report.tolist()
             if self._log is not None:
                 self._log.stepped(me, began, tests, n_sent, now_ps, next_ps)
             if consumed:
                 inbox.popleft()
             if n_sent:
                 self._carry(n_sent)
-            if rays_left == 0 and not self._ending:
+            if runs["rays_left"][0] == 0 and not self._ending:
                 self._finish()
             if next_ps == SLEEP:
                 self._asleep[me] = asleep = _happened(environment)
@@ -102,7 +102,7 @@ class SimpyRun:
     def _carry(self, n_sent: int) -> None:
         """Messages of the outbox travel: each arrives as one event."""
         state, now_ps = self.state, self._environment.now
-        for row in state.outbox[:n_sent].tolist():
+        for row in state.arrays["outbox"][:n_sent].tolist():
             m = state.messages[row]
             destination, source = int(m["destination"]), int(m["source"])
             arrival = _happened(self._environment, (destination, row))
@@ -125,7 +125,7 @@ class SimpyRun:
     def _finish(self) -> None:
         """No ray is left: stop at the end of the last ray's last cost, before all else there."""
         self._ending = True
-        end_ps = int(self.state.totals["last_ray_ps"][0])
+        end_ps = self.state["last_ray_ps"]
         self._environment.schedule(self._end, _FIRST, end_ps - self._environment.now)
 
 
@@ -141,6 +141,6 @@ def starved(state: State) -> str:
     load = state.pes["load"]
     holders = [f"PE {k}: {load[k]} rays, all waiting" for k in load.nonzero()[0][:5]]
     return (
-        f"{state.totals['rays_left'][0]} rays are left and nothing is scheduled "
-        f"after {state.totals['tests'][0]} tests: {'; '.join(holders)}"
+        f"{state['rays_left']} rays are left and nothing is scheduled "
+        f"after {state['tests']} tests: {'; '.join(holders)}"
     )

@@ -6,11 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from simmpp.engine.layout import NONE
 from simmpp.engine.log import ActivityLog
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State, new_state
-from simmpp.engine.tables import NONE, USED
+from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError, ModelError
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -49,7 +50,8 @@ def simulate(
     )
     activity_log = ActivityLog(machine.processors) if log else None
     run = SimpyRun(state, log=activity_log, progress=progress)
-    return _conclude(run.run(), run.arrivals, policy, engine, activity_log)
+    run.run()
+    return _conclude(state, run.arrivals, policy, engine, activity_log)
 
 
 def _check(
@@ -81,8 +83,7 @@ def _conclude(
     state: State, arrivals: int, policy: PolicyParameters, engine: str, log: ActivityLog | None
 ) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing."""
-    totals = state.totals[0]
-    makespan_ps = int(totals["last_ray_ps"])
+    makespan_ps = state["last_ray_ps"]
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
     communication_ps = state.pes["communication_ps"] - overrun_ps
     compute_ps = state.pes["compute_ps"].copy()
@@ -95,33 +96,33 @@ def _conclude(
         engine=engine,
         makespan_ps=makespan_ps,
         messages_by_kind=sent_by_kind,
-        messages_received=int(totals["received"]),
+        messages_received=state["received"],
         bytes_sent=bytes_sent,
-        rays=int(totals["rays"]),
-        tests=int(totals["tests"]),
-        rays_sent=int(totals["rays_sent"]),
+        rays=state["rays_done"],
+        tests=state["tests"],
+        rays_sent=state["rays_sent"],
         compute_ps=compute_ps,
         communication_ps=communication_ps,
         waiting_ps=waiting_ps,
         peak_rays=int(state.pes["peak_rays"].max()),
         peak_bytes=int(state.pes["peak_bytes"].max()),
-        events=int(totals["activities"]) + arrivals,
+        events=state["activities"] + arrivals,
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
         log=log.events(makespan_ps) if log else None,
-        tested_rays=state.tested_rays if len(state.tested_rays) else None,
-        tested_objects=state.tested_objects if len(state.tested_objects) else None,
+        tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
+        tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )
 
 
 def _sent_by(state: State, end_ps: int) -> tuple[tuple[int, int, int, int], int]:
     """Messages and bytes that had departed at the end; only load messages can be later."""
-    pool = state.messages[: state.message_marks[USED]]
+    pool = state.messages[: state.arrays["messages_marks"][USED]]
     late = pool[(pool["kind"] != NONE) & (pool["depart_ps"] > end_ps)]
-    by_kind = state.sent_by_kind - np.bincount(late["kind"], minlength=4)
-    header_bytes = int(state.setup["header_bytes"][0])
+    by_kind = state.arrays["sent_by_kind"] - np.bincount(late["kind"], minlength=4)
+    header_bytes = state["header_bytes"]
     late_bytes = int(late["payload_bytes"].sum()) + header_bytes * len(late)
     requests, objects, rays, loads = (int(n) for n in by_kind)
-    return (requests, objects, rays, loads), int(state.totals["bytes_sent"][0]) - late_bytes
+    return (requests, objects, rays, loads), state["bytes_sent"] - late_bytes
 
 
 def _never_fired(

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
+from simmpp.engine.layout import NONE
 
-NONE = -1
 FREE, USED = 0, 1
 
 
@@ -33,24 +33,9 @@ class Lists(NamedTuple):
     """Doubly linked lists; an item is in at most one list of the family."""
 
     ends: NDArray[np.int32]
-    """(lists, 2) int32: first and last item, plus 1; 0 when empty."""
+    """(2 * lists,) int32: first and last item of each, plus 1; 0 when empty."""
     links: NDArray[np.int32]
-    """(items, 2) int32: previous and next item."""
-
-
-def new_table(dtype: np.dtype[np.void], capacity: int) -> Table:
-    """An empty table for at most ``capacity`` rows of ``dtype`` at a time."""
-    n_buckets = 1 << max(4, int(capacity - 1).bit_length())
-    return Table(
-        np.zeros(n_buckets, np.int32),
-        np.zeros(capacity, dtype),
-        np.array([NONE, 0], np.int32),
-    )
-
-
-def new_lists(n_lists: int, n_items: int) -> Lists:
-    """Empty lists over items 0 ... n_items - 1."""
-    return Lists(np.zeros((n_lists, 2), np.int32), np.zeros((n_items, 2), np.int32))
+    """(2 * items,) int32: previous and next item of each."""
 
 
 @njit
@@ -118,34 +103,47 @@ def give_back(rows: NDArray[np.void], marks: NDArray[np.int32], row: int) -> Non
 @njit
 def first(lists: Lists, which: int) -> int:
     """The first item of list ``which``, or NONE."""
-    return lists.ends[which, 0] - 1
+    return lists.ends[2 * which] - 1
+
+
+@njit
+def following(lists: Lists, item: int) -> int:
+    """The item after ``item`` in its list, or NONE."""
+    return lists.links[2 * item + 1]
 
 
 @njit
 def append(lists: Lists, which: int, item: int) -> None:
     """Put ``item`` at the end of list ``which``."""
-    last = lists.ends[which, 1] - 1
-    lists.links[item, 0] = last
-    lists.links[item, 1] = NONE
+    last = lists.ends[2 * which + 1] - 1
+    lists.links[2 * item] = last
+    lists.links[2 * item + 1] = NONE
     if last >= 0:
-        lists.links[last, 1] = item
+        lists.links[2 * last + 1] = item
     else:
-        lists.ends[which, 0] = item + 1
-    lists.ends[which, 1] = item + 1
+        lists.ends[2 * which] = item + 1
+    lists.ends[2 * which + 1] = item + 1
 
 
 @njit
 def unlink(lists: Lists, which: int, item: int) -> None:
     """Take ``item`` out of list ``which``, wherever it stands."""
-    before, after = lists.links[item, 0], lists.links[item, 1]
+    before, after = lists.links[2 * item], lists.links[2 * item + 1]
     if before >= 0:
-        lists.links[before, 1] = after
+        lists.links[2 * before + 1] = after
     else:
-        lists.ends[which, 0] = after + 1
+        lists.ends[2 * which] = after + 1
     if after >= 0:
-        lists.links[after, 0] = before
+        lists.links[2 * after] = before
     else:
-        lists.ends[which, 1] = before + 1
+        lists.ends[2 * which + 1] = before + 1
+
+
+@njit
+def clear(lists: Lists, which: int) -> None:
+    """Empty list ``which``; its items are in no list then."""
+    lists.ends[2 * which] = 0
+    lists.ends[2 * which + 1] = 0
 
 
 @njit

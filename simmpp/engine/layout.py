@@ -1,0 +1,204 @@
+"""How the state of a run lies in memory: one record of scalars and of where its arrays are.
+
+The model gets this one record. Thirty arrays as arguments would be copied word by word at every
+call between compiled functions; a record is one pointer.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Run = Any
+"""A RUN record; numba's type, which Python has no name for."""
+Row = Any
+"""A record of one of the arrays."""
+
+NONE = -1
+
+PE = np.dtype(
+    [
+        ("ready_first", "i4"),  # list of ready rays, linked through RAY.next
+        ("ready_last", "i4"),
+        ("n_ready", "i8"),
+        ("load", "i8"),  # rays held: ready + waiting
+        ("settled_load", "i8"),  # load at the end of the last ended activity
+        ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
+        ("messages_sent", "i8"),
+        ("busy_until_ps", "i8"),
+        ("compute_ps", "i8"),
+        ("communication_ps", "i8"),
+        ("held_bytes", "i8"),  # resident and fetched objects
+        ("peak_rays", "i8"),
+        ("peak_bytes", "i8"),
+        ("n_transient", "i4"),
+        ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
+    ],
+    align=True,
+)
+RAY = np.dtype(
+    [
+        ("at", "i8"),  # next entry of itinerary_objects
+        ("next", "i4"),  # next ray of the list that this ray is in
+        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+    ],
+    align=True,
+)
+WANT = np.dtype(
+    [
+        ("key", "i8"),  # PE * N + object
+        ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
+        ("chain", "i4"),
+        ("first", "i4"),  # waiting rays, oldest first
+        ("last", "i4"),
+        ("n", "i4"),
+        ("unasked", "i4"),  # waiting rays that no request covers
+        ("requests", "i4"),  # in flight
+        ("pinned", "i4"),  # released rays that have not made their test yet
+        ("transient", "i4"),  # 1: in transient memory
+        ("partner", "i4"),  # row of the owner in ``partners``, if the policy sends
+    ],
+    align=True,
+)
+PARTNER = np.dtype(
+    [
+        ("key", "i8"),  # PE * nb + the other PE
+        ("load", "i8"),  # last heard; NONE if never
+        ("heard_ps", "i8"),
+        ("sent_ps", "i8"),  # departure of the last message to it, 0 if none
+        ("chain", "i4"),
+        ("sendable", "i4"),  # rays waiting for its objects that may be sent
+        ("exchanged", "i4"),  # 1: rays or objects went from one to the other
+    ],
+    align=True,
+)
+MESSAGE = np.dtype(
+    [
+        ("depart_ps", "i8"),
+        ("arrival_ps", "i8"),
+        ("number", "i8"),  # the sender's send number
+        ("load", "i8"),  # the sender's, at packing, without the rays in the message
+        ("payload_bytes", "i8"),
+        ("chain", "i4"),
+        ("source", "i4"),
+        ("destination", "i4"),
+        ("object", "i4"),
+        ("first", "i4"),  # rays
+        ("last", "i4"),
+        ("n", "i4"),
+        ("kind", "i4"),  # NONE: a free place
+    ],
+    align=True,
+)
+COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
+"""Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
+
+I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
+
+ARRAYS: dict[str, np.dtype[Any]] = {
+    # of the workload and the placement: shared, only read
+    "itinerary_offsets": I8,
+    "itinerary_objects": I4,
+    "child_offsets": I4,
+    "object_bytes": I8,
+    "test_ps": I8,
+    "owners": I4,
+    "resident": I1,  # bit o of the row_bytes at k * row_bytes: PE k holds a replica of object o
+    # of the run
+    "copy_costs": COPY,
+    "sent_by_kind": I8,
+    "pes": PE,
+    "rays": RAY,
+    "wants": WANT,  # objects that a PE lacks, or holds for a while
+    "wants_buckets": I4,
+    "wants_marks": I4,
+    "partners": PARTNER,  # what a PE knows of another and holds for it
+    "partners_buckets": I4,
+    "partners_marks": I4,
+    "messages": MESSAGE,  # in flight or in an inbox
+    "messages_marks": I4,
+    # Wants with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_at_least rays on.
+    "unasked_ends": I4,
+    "unasked_links": I4,
+    # Wants in the transient memory of each PE, least recently used first.
+    "recent_ends": I4,
+    "recent_links": I4,
+    # Partners with sendable rays: list 2 k of PE k, or 2 k + 1 from batch rays on.
+    "unsent_ends": I4,
+    "unsent_links": I4,
+    # Wants with sendable rays: one list per partner.
+    "sendable_ends": I4,
+    "sendable_links": I4,
+    "outbox": I4,  # messages that the last step sent, in order
+    "sort_keys": I8,
+    "sort_items": I8,
+    "tested_rays": I4,
+    "tested_objects": I4,
+}
+"""Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
+
+PARAMETERS = (
+    "processors",
+    "n_objects",
+    "x",  # shape of the torus
+    "y",
+    "z",
+    "send_startup_ps",
+    "receive_startup_ps",
+    "probe_ps",
+    "latency_ps",
+    "hop_latency_ps",
+    "bytes_per_s",  # the smaller of link and injection bandwidth
+    "header_bytes",
+    "request_bytes",
+    "ray_bytes",
+    "ray_ps",
+    "quantum",
+    "depth_first",
+    "transient",
+    "row_bytes",  # of ``resident``; 0 if no PE holds a replica
+    "all_resident",
+    "sends",
+    "asks",
+    "may_send",  # addresses of the policy's rules
+    "may_ask",
+    "min_load",
+    "initial_load",  # floor(n0 / nb): known of a PE before it is heard
+    "batch",
+    "ask_at_least",
+    "load_info",
+    "listens",  # remembers the loads in headers
+    "refresh_ps",  # NONE: no refresh
+    "merge_requests",
+    "record_tests",
+)
+COUNTERS = (
+    "rays_left",
+    "last_ray_ps",  # latest end of a ray's last cost
+    "rays_done",
+    "tests",
+    "rays_sent",
+    "bytes_sent",
+    "received",
+    "activities",
+)
+REPORT = (
+    "phase",  # of the PE's next instant
+    "consumed",  # 1: the message of the inbox was received
+    "n_sent",  # messages in the outbox
+    "began",  # NO_ACTIVITY, RECEIVE or COMPUTE
+    "step_tests",
+)
+"""What the last step of a PE wants its engine to know."""
+
+RUN = np.dtype(
+    [(name, "i8") for name in (*PARAMETERS, *COUNTERS, *REPORT)]
+    + [(f"{name}_{what}", "i8") for name in ARRAYS for what in ("at", "n")]
+)
+
+PIGGYBACK, EXACT, NO_INFO = range(3)
+LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
+BEGIN, DISPATCH = range(2)
+NO_ACTIVITY, RECEIVE, COMPUTE = range(3)
+PACK, UNPACK = 0, 4
