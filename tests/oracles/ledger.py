@@ -1,0 +1,114 @@
+"""What the oracle writes down during a run, and the totals that come out of it at the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from oracles.state import Message
+from simmpp.machine.messages import MESSAGE_KINDS
+
+
+@dataclass
+class Outcome:
+    """Everything that a run gives back; a list has one entry per PE."""
+
+    makespan_ps: int
+    messages_by_kind: tuple[int, int, int, int]
+    messages_received: int
+    bytes_sent: int
+    rays: int
+    tests: int
+    rays_sent: int
+    compute_ps: list[int]
+    communication_ps: list[int]
+    waiting_ps: list[int]
+    peak_rays: int
+    peak_bytes: int
+    events: int
+    rules_never_fired: tuple[str, ...]
+    arrivals: list[tuple[int, int, int, int, str, int]]
+    """(time, destination, source, send number, message kind, payload bytes)."""
+    activities: list[tuple[int, int, str, int, int]]
+    """(begin, PE, "receive <kind>" or "compute", end, tests)."""
+    tested: list[tuple[int, int]]
+    """(ray, object) in the order performed: by the beginnings of the computes."""
+
+
+@dataclass
+class Ledger:
+    """Every cost, message, arrival, activity and test of a run, in lists."""
+
+    costs: list[tuple[str, int, int, int]] = field(default_factory=list)
+    """(account, PE, from, to)."""
+    sent: list[Message] = field(default_factory=list)
+    received: int = 0
+    arrivals: list[tuple[int, int, int, int, str, int]] = field(default_factory=list)
+    open: dict[int, tuple[int, str, int]] = field(default_factory=dict)
+    """PE: (begin, kind, tests) of the activity that has not ended."""
+    activities: list[tuple[int, int, str, int, int]] = field(default_factory=list)
+    tested: list[tuple[int, int]] = field(default_factory=list)
+    finished_ps: list[int] = field(default_factory=list)
+    """The ends of finished rays."""
+    held_rays: list[int] = field(default_factory=list)
+    held_bytes: list[int] = field(default_factory=list)
+
+    @property
+    def makespan_ps(self) -> int:
+        """The end of the last ray's last cost."""
+        return max(self.finished_ps, default=0)
+
+    def pay(self, account: str, pe: int, clock: int, cost: int) -> int:
+        """Write down a cost; returns the time when it has been paid."""
+        self.costs.append((account, pe, clock, clock + cost))
+        return clock + cost
+
+    def arrived(self, time: int, m: Message) -> None:
+        """Write down an arrival."""
+        kind = MESSAGE_KINDS[m.kind]
+        self.arrivals.append((time, m.destination, m.source, m.send_number, kind, m.payload_bytes))
+
+    def end_activity(self, pe: int, end: int) -> None:
+        """Write down an activity that is over."""
+        begin, kind, n_tests = self.open.pop(pe)
+        self.activities.append((begin, pe, kind, end, n_tests))
+
+    def account(self, name: str, pe: int) -> int:
+        """Time of a PE in an account, clipped at the makespan."""
+        end = self.makespan_ps
+        return sum(
+            min(to, end) - min(since, end)
+            for account, number, since, to in self.costs
+            if account == name and number == pe
+        )
+
+    def outcome(self, processors: int, header_bytes: int, rules: tuple[str, ...]) -> Outcome:
+        """The totals; ``rules`` are those that the policy has ("send", "ask")."""
+        end = self.makespan_ps
+        for pe in list(self.open):
+            self.end_activity(pe, end)
+        sent = [m for m in self.sent if m.departure <= end]
+        by_kind = [sum(m.kind == kind for m in sent) for kind in range(4)]
+        requests, objects, rays, loads = by_kind
+        fired = {"send": rays > 0, "ask": requests > 0}
+        compute = [self.account("compute", k) for k in range(processors)]
+        communication = [self.account("communication", k) for k in range(processors)]
+        activities = [(*row[:3], min(row[3], end), row[4]) for row in self.activities]
+        return Outcome(
+            makespan_ps=end,
+            messages_by_kind=(requests, objects, rays, loads),
+            messages_received=self.received,
+            bytes_sent=sum(m.payload_bytes + header_bytes for m in sent),
+            rays=len(self.finished_ps),
+            tests=len(self.tested),
+            rays_sent=sum(len(m.rays) for m in sent),
+            compute_ps=compute,
+            communication_ps=communication,
+            waiting_ps=[end - a - b for a, b in zip(compute, communication, strict=True)],
+            peak_rays=max(self.held_rays),
+            peak_bytes=max(self.held_bytes),
+            events=len(activities) + len(self.arrivals),
+            rules_never_fired=tuple(rule for rule in rules if not fired[rule]),
+            arrivals=sorted(self.arrivals),
+            activities=sorted(activities, key=lambda row: row[:2]),
+            tested=self.tested,
+        )

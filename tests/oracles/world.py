@@ -1,0 +1,115 @@
+"""The oracle's PEs, the queue of what is going to happen, and the messages that PEs send."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from oracles.costs import copy_ps, network_ps
+from oracles.ledger import Ledger
+from oracles.rules import Rules
+from oracles.state import PE, Message
+from simmpp.machine.machine import Machine
+from simmpp.machine.messages import OBJECT, RAYS
+from simmpp.placement.placement import Placement
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.workload.workload import Workload
+
+
+@dataclass
+class World:
+    """The state of a run."""
+
+    workload: Workload
+    machine: Machine
+    placement: Placement
+    policy: PolicyParameters
+    ready_order: str
+    rules: Rules
+    queue: list[tuple[Any, ...]] = field(default_factory=list)
+    """A heap of (key, what happens, to whom); keys are the order of ties and never equal:
+    arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0)."""
+    ledger: Ledger = field(default_factory=Ledger)
+
+    def __post_init__(self) -> None:
+        self.nb = self.placement.processors
+        self.owners = [int(o) for o in self.placement.owners]
+        self.object_bytes = [int(b) for b in self.workload.object_bytes]
+        self.rays_left = self.workload.n_rays
+        offsets = [int(i) for i in self.workload.itinerary_offsets]
+        objects = [int(o) for o in self.workload.itinerary_objects]
+        self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
+        self.positions = [0] * self.workload.n_rays
+        self.pes = [self.new_pe(k) for k in range(self.nb)]
+        for pe in self.pes:
+            self.sample_rays(pe)
+            self.sample_bytes(pe)
+
+    def new_pe(self, k: int) -> PE:
+        """A PE before the start, its primary rays ready."""
+        resident = {o for o, owner in enumerate(self.owners) if owner == k}
+        first, end = (int(i) for i in self.placement.replica_offsets[k : k + 2])
+        resident |= {int(o) for o in self.placement.replica_objects[first:end]}
+        if self.policy.name == "replicated":
+            resident = set(range(len(self.owners)))
+        rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
+        share = Fraction(self.workload.n_primaries, self.nb)
+        return PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
+
+    def schedule(self, time: int, pe: PE, what: str) -> None:
+        """Let a PE begin or dispatch at a time."""
+        heapq.heappush(self.queue, ((time, 1, pe.number, pe.instants, 0), what, pe))
+        pe.instants += 1
+
+    def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
+        """Charge a PE; returns the time when it has paid."""
+        return self.ledger.pay(account, pe.number, clock, cost)
+
+    def send(
+        self,
+        clock: int,
+        pe: PE,
+        kind: int,
+        destination: int,
+        payload_bytes: int,
+        obj: int = -1,
+        rays: tuple[int, ...] = (),
+    ) -> int:
+        """Pack a message and let it depart; returns the time of that."""
+        cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
+        clock = self.pay("communication", pe, clock, cost)
+        arrival = clock + network_ps(self.machine, pe.number, destination, payload_bytes)
+        message = Message(
+            kind=kind,
+            source=pe.number,
+            destination=destination,
+            send_number=pe.sends,
+            payload_bytes=payload_bytes,
+            load=pe.load,
+            departure=clock,
+            arrival=arrival,
+            obj=obj,
+            rays=rays,
+        )
+        pe.sends += 1
+        pe.last_departure[destination] = clock
+        if kind in (OBJECT, RAYS):
+            pe.partners.add(destination)
+        self.ledger.sent.append(message)
+        key = (arrival, 0, destination, pe.number, message.send_number)
+        heapq.heappush(self.queue, (key, "arrive", message))
+        return clock
+
+    def sample_rays(self, pe: PE) -> None:
+        """Note how many rays a PE holds."""
+        self.ledger.held_rays.append(pe.load)
+
+    def sample_bytes(self, pe: PE) -> None:
+        """Note how many bytes a PE holds."""
+        pinned = {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
+        held = pe.resident | pinned | set(pe.transient)
+        n_bytes = sum(self.object_bytes[o] for o in held) + pe.load * self.machine.ray_bytes
+        self.ledger.held_bytes.append(n_bytes)
