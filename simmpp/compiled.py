@@ -30,6 +30,15 @@ def njit(function: Function) -> Function:
     return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
 
 
+def njit_reading(function: Function) -> Function:
+    """:func:`njit` for inner functions that make no arrays: their calls count no references.
+
+    A search of a tree that calls one for each box takes a third of the time.
+    """
+    numba.config.CACHE_DIR = str(_folder(function.__module__))
+    return numba.njit(cache=True, error_model="numpy", nogil=True, _nrt=False)(function)
+
+
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 
