@@ -39,7 +39,7 @@ def _quit(message: str, code: int) -> NoReturn:
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="simmpp")
+@click.version_option(package_name="simmpp", prog_name="simmpp")
 def main() -> None:
     """Should rays travel to the objects, or objects to the rays?
 

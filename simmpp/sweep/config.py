@@ -169,8 +169,8 @@ def _scene_folder(places: Places, folder: Path) -> Path:
 
 
 def described(config: Config) -> dict[str, Any]:
-    """The configuration with all defaults, as JSON can hold it; shares as text, times in ps."""
-    plain: dict[str, Any] = _plain(config.settings.model_dump())
+    """The configuration with its defaults, as JSON can hold it; shares as text, times in ps."""
+    plain: dict[str, Any] = _plain(config.settings.model_dump(exclude_none=True))
     return plain
 
 

@@ -62,8 +62,13 @@ def row(point: Point, run: PolicyRun) -> Row:
 
 def write_rows(rows: Iterable[Row], path: Path) -> None:
     """Write rows sorted by their keys; equal rows give equal bytes."""
-    ordered = sorted(rows, key=lambda each: [str(each[key]) for key in KEYS])
+    ordered = sorted(rows, key=_order)
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(ordered)
+
+
+def _order(row: Row) -> list[tuple[bool, object]]:
+    """Numbers by size, before the empty text of what was not given."""
+    return [(isinstance(row[key], str), row[key]) for key in KEYS]

@@ -1,0 +1,183 @@
+"""The commands as a user meets them: output, files, exit codes, one line for every mistake."""
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from simmpp.cli import main
+from simmpp.errors import ModelError
+from simmpp.sweep.rows import COLUMNS
+
+CONFIG = """
+scene: tetra:2
+picture: {resolution: 12}
+processors: 4
+memory: {fraction: 0.3}
+policy: [ray, concurrent]
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SIMMPP_CACHE", str(tmp_path / "cache"))
+    Path("c.yaml").write_text(CONFIG)
+
+
+def simmpp(*arguments: str) -> Result:
+    return CliRunner().invoke(main, arguments)
+
+
+def refused(*arguments: str) -> str:
+    """The one line on the error output of a command that exits with 2."""
+    done = simmpp(*arguments)
+    assert done.exit_code == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    return line
+
+
+def test_run_prints_every_policy_with_reference_and_ceiling() -> None:
+    done = simmpp("run", "c.yaml")
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("tetra:2: 12 x 12 primary rays")
+    assert lines[3].split() == ["object", "ray", "concurrent", "replicated"]
+    (profit,) = [line for line in lines if line.startswith("time profit")]
+    assert profit.split()[2] == "1.000"
+    assert any(line.startswith("bound: total compute / 4 = ") for line in lines)
+    assert done.stderr == ""
+
+
+def test_run_says_when_a_rule_never_fired() -> None:
+    done = simmpp("run", "c.yaml", "--set", "policy={name: concurrent, min_load: 1000000}")
+    assert "concurrent: its send rule never fired" in done.stdout
+
+
+def test_run_writes_rows_and_record() -> None:
+    assert simmpp("run", "c.yaml", "--out", "a/b").exit_code == 0
+    with open("a/b/results.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == COLUMNS
+    assert [row["policy"] for row in rows if row["scene"] == "tetra:2"] == [
+        "concurrent", "object", "ray", "replicated",
+    ]  # fmt: skip
+    assert {row["effective_fraction"] for row in rows if row["policy"] == "replicated"} == {"1.0"}
+    record = json.loads(Path("a/b/run.json").read_text())
+    assert record["config"]["processors"] == 4
+    assert record["machine"]["send_startup_ps"] == 10_000_000
+    for policy in record["policies"]:
+        accounts = zip(*policy["pes"].values(), strict=True)
+        assert {sum(account) for account in accounts} == {policy["makespan_ps"]}
+    assert [policy["named"] for policy in record["policies"]] == [False, True, True, False]
+
+
+def test_two_runs_write_the_same_rows() -> None:
+    for out in ("a", "b"):
+        simmpp("run", "c.yaml", "--out", out)
+    assert Path("a/results.csv").read_bytes() == Path("b/results.csv").read_bytes()
+
+
+def test_one_pe_needs_no_message_and_no_profit() -> None:
+    done = simmpp("run", "c.yaml", "--set", "processors=1", "--set", "policy=ray")
+    assert done.exit_code == 0, done.output
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("message profit")]
+    assert line.split()[2:] == ["1.000", "1.000", "1.000"]
+
+
+def test_scene_lists_and_writes_nff() -> None:
+    done = simmpp("scene", "tetra:3", "--nff", "t.nff")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("tetra:3: 64 objects (64 polygons)")
+    assert "... and 44 more objects; --objects lists all" in done.stdout
+    again = simmpp("scene", "t.nff", "--objects")
+    assert len(again.stdout.splitlines()) > 64
+    assert "more objects" not in again.stdout
+
+
+def test_machine_prints_sources() -> None:
+    done = simmpp("machine", "t3e")
+    assert done.stdout.startswith("t3e: Cray T3E")
+    assert "340 MB/s" in done.stdout
+    assert "ESTIMATE, range" in done.stdout
+
+
+def test_mistakes() -> None:
+    Path("bad.yaml").write_text("scene: tetra:2\nprocessors: 0\n")
+    Path("bad.nff").write_text("v\nfrom x\n")
+    expected = "expected an integer from 1 to 65536"
+    assert (
+        refused("run", "bad.yaml") == f"simmpp: error: bad.yaml:2: processors: value 0: {expected}"
+    )
+    assert refused("run", "c.yaml", "--set", "processors=0") == (
+        f"simmpp: error: --set processors: value 0: {expected}"
+    )
+    assert refused("run", "none.yaml").startswith("simmpp: error: none.yaml: can't read the file")
+    assert refused("run", "c.yaml", "--engine", "x").startswith(
+        "simmpp: error: --set engine: value"
+    )
+    assert refused("run", "c.yaml", "--set", "method=analytical").startswith(
+        "simmpp: error: method"
+    )
+    assert refused("run", "c.yaml", "--set", "scene=bad.nff").startswith(
+        "simmpp: error: bad.nff:2:"
+    )
+    assert refused("run", "c.yaml", "--picture", "no/p.png").startswith("simmpp: error: --picture:")
+    assert refused("run", "c.yaml", "--out", "c.yaml").startswith("simmpp: error: --out:")
+    assert refused("scene", "tetra:0").startswith("simmpp: error: ")
+    assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")
+    assert refused("machine", "cm5").startswith("simmpp: error: value 'cm5': expected a preset")
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "line"),
+    [
+        (ModelError("3 rays left"), 70, "simmpp: this is a bug, please report it: 3 rays left"),
+        (KeyboardInterrupt(), 130, "simmpp: interrupted"),
+        (MemoryError(), 2, "simmpp: error: out of memory: expected a smaller scene or resolution"),
+    ],
+)
+def test_other_ends(
+    monkeypatch: pytest.MonkeyPatch, raised: BaseException, code: int, line: str
+) -> None:
+    def simulate(*_: object, **__: object) -> None:
+        raise raised
+
+    monkeypatch.setattr("simmpp.sweep.point.simulate", simulate)
+    done = simmpp("run", "c.yaml")
+    assert done.exit_code == code
+    assert done.stderr.splitlines() == [line]
+
+
+def test_an_interrupted_run_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    from simmpp.engine.simulate import simulate
+
+    def interrupted(*arguments: object, **options: object) -> object:
+        if arguments[3].name == "concurrent":  # type: ignore[attr-defined]
+            raise KeyboardInterrupt
+        return simulate(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("simmpp.sweep.point.simulate", interrupted)
+    assert simmpp("run", "c.yaml", "--out", "o").exit_code == 130
+    lines = Path("o/results.csv").read_text().splitlines()
+    assert [line.split(",")[4] for line in lines] == ["policy", "object", "ray"]
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from simmpp.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "print([m for m in ('numpy', 'numba', 'pydantic', 'pint', 'embreex') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_version() -> None:
+    assert simmpp("--version").stdout.startswith("simmpp, version ")
