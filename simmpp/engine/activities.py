@@ -15,18 +15,17 @@ from simmpp.compiled import njit
 from simmpp.engine.dispatch import dispatch
 from simmpp.engine.layout import (
     BEGIN,
-    COMPUTE,
     DISPATCH,
-    NO_ACTIVITY,
     NONE,
-    RECEIVE,
     UNPACK,
     Run,
 )
+from simmpp.engine.log import note_begin, note_end
 from simmpp.engine.memory import (
     copy_costs,
     itinerary_objects,
     itinerary_offsets,
+    log,
     messages,
     messages_marks,
     object_bytes,
@@ -52,11 +51,11 @@ def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int)
     """Act on an instant of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
-    record's REPORT fields then hold the phase of that instant, whether the message was consumed,
-    the number of messages in the outbox, the activity that began and its tests.
+    record's REPORT fields then hold the phase of that instant, whether the message was consumed
+    and the number of messages in the outbox.
     """
     s: Run = runs[0]
-    s.phase, s.consumed, s.n_sent, s.began, s.step_tests = BEGIN, 0, 0, NO_ACTIVITY, 0
+    s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     pe = pes(s)[me]
     next_ps = now_ps
     if phase == DISPATCH:
@@ -72,15 +71,18 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
     pe.settled_load = pe.load
+    if s.logs:
+        note_end(s, me, now_ps)
     if message == NONE and pe.n_ready == 0:
         return SLEEP
     s.activities += 1
     s.phase = DISPATCH
+    if s.logs:
+        note_begin(s, me, message, now_ps)
     if message != NONE:
-        s.began, s.consumed = RECEIVE, 1
+        s.consumed = 1
         next_ps = receive(s, me, message, now_ps)
     else:
-        s.began = COMPUTE
         next_ps = compute(s, me, now_ps)
     pe.peak_bytes = max(pe.peak_bytes, pe.held_bytes + pe.load * s.ray_bytes)
     return next_ps
@@ -148,8 +150,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             clock_ps += s.ray_ps
             pop_ready(s, me)
             finish_ray(s, me, ray, clock_ps)
-    s.tests += tests
-    s.step_tests = tests
+    if s.logs:
+        log(s)[pe.open_event].tests = tests
     pe.compute_ps += clock_ps - start_ps
     pe.communication_ps += s.probe_ps
     return clock_ps
@@ -159,9 +161,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
 def _test(s: Run, me: int, ray: int, tested: int) -> None:
     """One ray-object intersection; what it finds is in the workload."""
     if s.record_tests:
-        at = s.step_tests + s.tests
-        tested_rays(s)[at], tested_objects(s)[at] = ray, tested
-        s.step_tests += 1
+        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, tested
+    s.tests += 1
     r = rays(s)[ray]
     r.at += 1
     if r.granted or s.transient > 0:

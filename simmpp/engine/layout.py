@@ -33,6 +33,7 @@ PE = np.dtype(
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
         ("n_transient", "i4"),
+        ("open_event", "i8"),  # row of the activity under way in the event log, or NONE
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
     ],
     align=True,
@@ -94,6 +95,20 @@ MESSAGE = np.dtype(
 COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
 """Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
 
+EVENT = np.dtype(
+    [
+        ("time_ps", "i8"),  # when a message arrives, or an activity begins
+        ("end_ps", "i8"),  # when the activity ends, dispatch included; of an arrival: time_ps
+        ("pe", "i4"),  # destination of an arrival
+        ("event", "i4"),  # ARRIVAL, RECEIVE or COMPUTE
+        ("source", "i4"),  # sender of the message; -1 for COMPUTE
+        ("kind", "i4"),  # kind of the message; -1 for COMPUTE
+        ("number", "i8"),  # the sender's send number; -1 for COMPUTE
+        ("payload_bytes", "i8"),
+        ("tests", "i8"),
+    ]
+)
+
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 
 ARRAYS: dict[str, np.dtype[Any]] = {
@@ -135,6 +150,7 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "sort_items": I8,
     "tested_rays": I4,
     "tested_objects": I4,
+    "log": EVENT,
 }
 """Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
 
@@ -172,6 +188,7 @@ PARAMETERS = (
     "refresh_ps",  # NONE: no refresh
     "merge_requests",
     "record_tests",
+    "logs",
 )
 COUNTERS = (
     "rays_left",
@@ -182,13 +199,12 @@ COUNTERS = (
     "bytes_sent",
     "received",
     "activities",
+    "n_logged",
 )
 REPORT = (
     "phase",  # of the PE's next instant
     "consumed",  # 1: the message of the inbox was received
     "n_sent",  # messages in the outbox
-    "began",  # NO_ACTIVITY, RECEIVE or COMPUTE
-    "step_tests",
 )
 """What the last step of a PE wants its engine to know."""
 
@@ -200,5 +216,5 @@ RUN = np.dtype(
 PIGGYBACK, EXACT, NO_INFO = range(3)
 LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
 BEGIN, DISPATCH = range(2)
-NO_ACTIVITY, RECEIVE, COMPUTE = range(3)
+ARRIVAL, RECEIVE, COMPUTE = range(3)
 PACK, UNPACK = 0, 4

@@ -9,7 +9,7 @@ from numba import carray, types
 from numba.extending import intrinsic
 
 from simmpp.compiled import njit
-from simmpp.engine.layout import COPY, I1, I4, I8, MESSAGE, PARTNER, PE, RAY, WANT, Run
+from simmpp.engine.layout import COPY, EVENT, I1, I4, I8, MESSAGE, PARTNER, PE, RAY, WANT, Run
 from simmpp.engine.tables import Lists, Table
 
 
@@ -190,3 +190,9 @@ def tested_rays(s: Run) -> Any:
 def tested_objects(s: Run) -> Any:
     """(tests,) int32, or empty."""
     return carray(_pointer(s.tested_objects_at), s.tested_objects_n, I4)
+
+
+@njit
+def log(s: Run) -> Any:
+    """(capacity,) EVENT, or empty."""
+    return carray(_pointer(s.log_at), s.log_n, EVENT)

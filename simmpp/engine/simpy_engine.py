@@ -16,11 +16,15 @@ from simpy.events import Event
 
 from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.entry import entry_point
-from simmpp.engine.layout import BEGIN, NONE
-from simmpp.engine.log import ActivityLog
+from simmpp.engine.layout import BEGIN, MESSAGE, NONE
+from simmpp.engine.log import note_arrival
 from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
+_ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
+    list(MESSAGE.names or ()).index(name)
+    for name in ("arrival_ps", "number", "source", "destination")
+)
 _FIRST = -1  # priority before all others of its instant
 _PROGRESS_EVERY = 4096
 
@@ -28,16 +32,11 @@ _PROGRESS_EVERY = 4096
 class SimpyRun:
     """One run, on a SimPy environment whose clock counts integer picoseconds."""
 
-    def __init__(
-        self,
-        state: State,
-        *,
-        log: ActivityLog | None = None,
-        progress: Callable[[int], None] | None = None,
-    ) -> None:
+    def __init__(self, state: State, progress: Callable[[int], None] | None = None) -> None:
         self.state = state
         self.arrivals = 0
-        self._log, self._progress = log, progress
+        self._progress = progress
+        self._note_arrival = entry_point(note_arrival, state.runs, 0)
         self._step = entry_point(step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
@@ -45,6 +44,7 @@ class SimpyRun:
         self._numbers = [0] * len(state.pes)
         self._end = _happened(self._environment)
         self._ending = False
+        self._logs = bool(state["logs"])
 
     def run(self) -> None:
         """Run until no ray is left.
@@ -70,12 +70,8 @@ class SimpyRun:
             state.ensure_room()
             now_ps = environment.now
             message = inbox[0] if inbox else NONE
-            if self._log is not None:
-                self._log.about_to_step(state, message)
             next_ps = step(runs, me, phase, message, now_ps)
-            phase, consumed, n_sent, began, tests = state.report.tolist()
-            if self._log is not None:
-                self._log.stepped(me, began, tests, n_sent, now_ps, next_ps)
+            phase, consumed, n_sent = state.report.tolist()
             if consumed:
                 inbox.popleft()
             if n_sent:
@@ -96,27 +92,28 @@ class SimpyRun:
 
     def _schedule_instant(self, me: int, event: Event, delay_ps: int) -> None:
         self._numbers[me] += 1
-        priority = (1 << 32 | me) << 64 | self._numbers[me]
+        priority = (1 << 64 | me) << 64 | self._numbers[me]
         self._environment.schedule(event, priority, delay_ps)
 
     def _carry(self, n_sent: int) -> None:
         """Messages of the outbox travel: each arrives as one event."""
         state, now_ps = self.state, self._environment.now
         for row in state.arrays["outbox"][:n_sent].tolist():
-            m = state.messages[row]
-            destination, source = int(m["destination"]), int(m["source"])
+            message = state.messages[row].item()
+            destination = message[_DESTINATION]
             arrival = _happened(self._environment, (destination, row))
             arrival.callbacks.append(self._deliver)
-            priority = (destination << 32 | source) << 64 | int(m["number"])
-            self._environment.schedule(arrival, priority, int(m["arrival_ps"]) - now_ps)
+            priority = (destination << 32 | message[_SOURCE]) << 64 | message[_NUMBER]
+            self._environment.schedule(arrival, priority, message[_ARRIVAL_PS] - now_ps)
 
     def _deliver(self, arrival: Event) -> None:
         """A message arrives: it lies in the inbox, and wakes its PE if that sleeps."""
         destination, row = arrival.value
         self.arrivals += 1
         self._inboxes[destination].append(row)
-        if self._log is not None:
-            self._log.arrived(self.state, row)
+        if self._logs:
+            self.state.ensure_room()
+            self._note_arrival(self.state.runs, row)
         asleep = self._asleep[destination]
         if asleep is not None:
             self._asleep[destination] = None

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from simmpp.engine.layout import NONE
-from simmpp.engine.log import ActivityLog
+from simmpp.engine.log import events
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State, new_state
@@ -46,12 +46,17 @@ def simulate(
     """
     _check(workload, machine, placement, policy, engine, ready_order)
     state = new_state(
-        workload, machine, placement, policy, ready_order=ready_order, record_tests=record_tests
+        workload,
+        machine,
+        placement,
+        policy,
+        ready_order=ready_order,
+        record_tests=record_tests,
+        log=log,
     )
-    activity_log = ActivityLog(machine.processors) if log else None
-    run = SimpyRun(state, log=activity_log, progress=progress)
+    run = SimpyRun(state, progress)
     run.run()
-    return _conclude(state, run.arrivals, policy, engine, activity_log)
+    return _conclude(state, run.arrivals, policy, engine)
 
 
 def _check(
@@ -79,9 +84,7 @@ def _check(
         )
 
 
-def _conclude(
-    state: State, arrivals: int, policy: PolicyParameters, engine: str, log: ActivityLog | None
-) -> Result:
+def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing."""
     makespan_ps = state["last_ray_ps"]
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
@@ -108,7 +111,7 @@ def _conclude(
         peak_bytes=int(state.pes["peak_bytes"].max()),
         events=state["activities"] + arrivals,
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
-        log=log.events(makespan_ps) if log else None,
+        log=events(state, makespan_ps) if state["logs"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

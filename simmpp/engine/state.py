@@ -47,7 +47,7 @@ class State:
             self._put(name, array)
         first = len(PARAMETERS) + len(COUNTERS)
         self.report = self.runs.view(np.int64)[first : first + len(REPORT)]
-        """(5,) int64: the REPORT fields of the record."""
+        """(3,) int64: the REPORT fields of the record."""
 
     def _put(self, name: str, array: NDArray[Any]) -> None:
         self.arrays[name] = array = np.ascontiguousarray(array, ARRAYS[name])
@@ -75,6 +75,8 @@ class State:
             bigger = np.zeros(2 * len(self.messages) + most_sent, MESSAGE)
             bigger[: len(self.messages)] = self.messages
             self._put("messages", bigger)
+        if self["logs"] and self["n_logged"] >= len(self.arrays["log"]) - 2:
+            self._put("log", np.concatenate([self.arrays["log"], self.arrays["log"]]))
 
 
 def new_state(
@@ -85,12 +87,17 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
+    log: bool = False,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     state = State(
         _arrays(workload, machine, placement, parameters, record_tests),
         _parameters(workload, machine, placement, parameters)
-        | {"depth_first": ready_order == "depth-first", "record_tests": record_tests},
+        | {
+            "depth_first": ready_order == "depth-first",
+            "record_tests": record_tests,
+            "logs": log,
+        },
     )
     everything = POLICIES[parameters.name].all_resident
     state.pes["held_bytes"] = _resident_bytes(workload, placement, everything)
@@ -133,6 +140,7 @@ def _arrays(
         "sort_items": max(n_objects, nb),
         "tested_rays": recorded,
         "tested_objects": recorded,
+        "log": 4096,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
     for name in ("wants_marks", "partners_marks", "messages_marks"):
@@ -230,6 +238,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     for me in range(s.processors):
         pes(s)[me].ready_first = NONE
         pes(s)[me].ready_last = NONE
+        pes(s)[me].open_event = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
         rays(s)[ray].next = NONE
