@@ -18,6 +18,7 @@ from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.entry import entry_point
 from simmpp.engine.layout import BEGIN, MESSAGE, NONE
 from simmpp.engine.log import note_arrival
+from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
@@ -131,13 +132,3 @@ def _happened(environment: simpy.Environment, value: object = None) -> Event:
     event = Event(environment)
     event._ok, event._value = True, value
     return event
-
-
-def starved(state: State) -> str:
-    """What to say when rays are left and nothing is scheduled: a bug, or a policy that starves."""
-    load = state.pes["load"]
-    holders = [f"PE {k}: {load[k]} rays, all waiting" for k in load.nonzero()[0][:5]]
-    return (
-        f"{state['rays_left']} rays are left and nothing is scheduled "
-        f"after {state['tests']} tests: {'; '.join(holders)}"
-    )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.layout import NONE
 from simmpp.engine.log import events
 from simmpp.engine.result import Result
@@ -20,7 +21,10 @@ from simmpp.policy.rules import DataflowPolicy
 from simmpp.policy.table import POLICIES
 from simmpp.workload.workload import Workload
 
-ENGINES = ("simpy",)
+ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {
+    "simpy": SimpyRun,
+    "compiled": CompiledRun,
+}
 READY_ORDERS = ("depth-first", "breadth-first")
 
 
@@ -54,7 +58,7 @@ def simulate(
         record_tests=record_tests,
         log=log,
     )
-    run = SimpyRun(state, progress)
+    run = ENGINES[engine](state, progress)
     run.run()
     return _conclude(state, run.arrivals, policy, engine)
 

@@ -1,0 +1,240 @@
+"""The fast engine: the same steps, driven by an event loop that is compiled too.
+
+Events are ordered by the same key as in the readable engine: time, then arrivals by (destination,
+source, send number), then the instants of PEs by (PE, number).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.compiled import njit
+from simmpp.engine.activities import SLEEP, step
+from simmpp.engine.layout import NONE, Row, Run
+from simmpp.engine.log import note_arrival
+from simmpp.engine.memory import messages, messages_marks, outbox
+from simmpp.engine.starved import starved
+from simmpp.engine.state import State
+from simmpp.engine.tables import USED
+from simmpp.errors import ModelError
+
+INSTANT = 1 << 62
+"""Rank of a PE's own instants, above all pairs of PEs."""
+EVENTS_PER_CALL = 1 << 20
+"""So that progress is shown and Ctrl-C is heard."""
+FINISHED, PAUSED, FULL, STARVED = range(4)
+
+EVENT_KEY = np.dtype(
+    [
+        ("time_ps", "i8"),
+        ("rank", "i8"),  # destination * 2^31 + source, or INSTANT + PE
+        ("number", "i8"),  # the sender's send number, or the PE's instants so far
+        ("message", "i8"),  # that arrives; NONE at an instant
+    ]
+)
+LINE = np.dtype(
+    [
+        ("first", "i4"),  # inbox of the PE, linked through MESSAGE.chain
+        ("last", "i4"),
+        ("instants", "i8"),
+        ("phase", "i4"),  # of the next instant
+        ("asleep", "i4"),
+    ]
+)
+LOOP = np.dtype([("size", "i8"), ("arrivals", "i8")])
+
+
+class CompiledRun:
+    """One run in compiled code."""
+
+    def __init__(self, state: State, progress: Callable[[int], None] | None = None) -> None:
+        self.state = state
+        self._progress = progress
+        self._heap = np.zeros(0, EVENT_KEY)
+        self._lines = np.zeros(len(state.pes), LINE)
+        self._loop = np.zeros(1, LOOP)
+
+    @property
+    def arrivals(self) -> int:
+        """Messages that have arrived."""
+        return int(self._loop["arrivals"][0])
+
+    def run(self) -> None:
+        """Run until no ray is left.
+
+        Raises ModelError if rays are left and nothing is scheduled.
+        """
+        status = FINISHED if self.state["rays_left"] == 0 else PAUSED
+        while status in (PAUSED, FULL):
+            self._make_room()
+            arguments = (self.state.runs, self._heap, self._lines, self._loop, EVENTS_PER_CALL)
+            status = _run(*arguments)
+            if self._progress is not None:
+                self._progress(self.state["rays_left"])
+        if status == STARVED:
+            raise ModelError(starved(self.state))
+
+    def _make_room(self) -> None:
+        self.state.ensure_room()
+        needed = len(self.state.messages) + len(self._lines) + 1
+        if len(self._heap) < needed:
+            heap = np.zeros(needed, EVENT_KEY)
+            heap[: len(self._heap)] = self._heap
+            self._heap = heap
+
+
+@njit
+def _run(
+    runs: NDArray[np.void],
+    heap: NDArray[np.void],
+    lines: NDArray[np.void],
+    loops: NDArray[np.void],
+    n_events: int,
+) -> int:
+    """Handle up to ``n_events`` events; the first call begins with all PEs at time 0."""
+    s: Run = runs[0]
+    loop = loops[0]
+    if s.activities == 0 and loop.size == 0:
+        for me in range(lines.size):
+            lines[me].first, lines[me].last = NONE, NONE
+            _schedule_instant(heap, lines, loop, me, 0)
+    for _ in range(n_events):
+        if loop.size == 0:
+            return FINISHED if s.rays_left == 0 else STARVED
+        time_ps, rank, message = heap[0].time_ps, heap[0].rank, heap[0].message
+        if s.rays_left == 0 and time_ps >= s.last_ray_ps:
+            return FINISHED
+        if _short_of_room(s):
+            return FULL
+        _pop(heap, loop)
+        if message != NONE:
+            _arrive(runs, heap, lines, loop, message, time_ps)
+        else:
+            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
+    return PAUSED
+
+
+@njit
+def _short_of_room(s: Run) -> bool:
+    room = s.messages_n - messages_marks(s)[USED]
+    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
+    return short or (s.logs and s.n_logged >= s.log_n - 2)
+
+
+@njit
+def _arrive(
+    runs: NDArray[np.void],
+    heap: NDArray[np.void],
+    lines: NDArray[np.void],
+    loop: Row,
+    message: int,
+    now_ps: int,
+) -> None:
+    """A message lies in the inbox of its destination, and wakes it if it sleeps."""
+    s: Run = runs[0]
+    me = messages(s)[message].destination
+    line = lines[me]
+    messages(s)[message].chain = NONE
+    if line.first == NONE:
+        line.first = message
+    else:
+        messages(s)[line.last].chain = message
+    line.last = message
+    loop.arrivals += 1
+    if s.logs:
+        note_arrival(runs, message)
+    if line.asleep:
+        line.asleep = 0
+        _schedule_instant(heap, lines, loop, me, now_ps)
+
+
+@njit
+def _step(
+    runs: NDArray[np.void],
+    heap: NDArray[np.void],
+    lines: NDArray[np.void],
+    loop: Row,
+    me: int,
+    now_ps: int,
+) -> None:
+    """One instant of a PE; what it sends travels."""
+    s: Run = runs[0]
+    line = lines[me]
+    message = line.first
+    following = messages(s)[message].chain if message != NONE else NONE
+    next_ps = step(runs, me, line.phase, message, now_ps)
+    line.phase = s.phase
+    if s.consumed:
+        line.first = following
+    for i in range(s.n_sent):
+        row = outbox(s)[i]
+        m = messages(s)[row]
+        rank = (np.int64(m.destination) << 31) | m.source
+        _push(heap, loop, m.arrival_ps, rank, m.number, row)
+    if next_ps == SLEEP:
+        line.asleep = 1
+    else:
+        _schedule_instant(heap, lines, loop, me, next_ps)
+
+
+@njit
+def _schedule_instant(
+    heap: NDArray[np.void], lines: NDArray[np.void], loop: Row, me: int, time_ps: int
+) -> None:
+    lines[me].instants += 1
+    _push(heap, loop, time_ps, INSTANT + me, lines[me].instants, NONE)
+
+
+@njit
+def _before(a: Row, time_ps: int, rank: int, number: int) -> bool:
+    """Does event ``a`` come before the one with that key?"""
+    if a.time_ps != time_ps:
+        return a.time_ps < time_ps
+    if a.rank != rank:
+        return a.rank < rank
+    return a.number < number
+
+
+@njit
+def _put(heap: NDArray[np.void], at: int, event: Row) -> None:
+    heap[at].time_ps, heap[at].rank = event.time_ps, event.rank
+    heap[at].number, heap[at].message = event.number, event.message
+
+
+@njit
+def _push(
+    heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int, message: int
+) -> None:
+    """Add an event to the binary heap."""
+    at = loop.size
+    loop.size += 1
+    while at > 0:
+        parent = (at - 1) // 2
+        if _before(heap[parent], time_ps, rank, number):
+            break
+        _put(heap, at, heap[parent])
+        at = parent
+    heap[at].time_ps, heap[at].rank = time_ps, rank
+    heap[at].number, heap[at].message = number, message
+
+
+@njit
+def _pop(heap: NDArray[np.void], loop: Row) -> None:
+    """Remove the first event of the binary heap."""
+    loop.size -= 1
+    last = heap[loop.size]
+    at, child = 0, 1
+    while child < loop.size:
+        right = child + 1
+        if right < loop.size:
+            r = heap[right]
+            if _before(r, heap[child].time_ps, heap[child].rank, heap[child].number):
+                child = right
+        if not _before(heap[child], last.time_ps, last.rank, last.number):
+            break
+        _put(heap, at, heap[child])
+        at, child = child, 2 * child + 1
+    _put(heap, at, last)
