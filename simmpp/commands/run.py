@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from simmpp.scene.scene import Scene
     from simmpp.sweep.config import Config
     from simmpp.sweep.point import Point, PolicyRun
-    from simmpp.workload.workload import Workload
 
 VERIFY_FAILED = 1
 
@@ -63,12 +62,13 @@ def run_command(
 def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool) -> None:
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     from simmpp.commands.terminal import output
+    from simmpp.commands.tracing import traced
     from simmpp.report.summary import summary
     from simmpp.scene.load import load_scene
     from simmpp.sweep.point import make_point
 
     scene = load_scene(config.scene_spec)
-    point = make_point(config, _traced(scene, config))
+    point = make_point(config, traced(scene, config.picture))
     if picture:
         _write_picture(scene, point, picture)
     runs: list[PolicyRun] = []
@@ -80,21 +80,6 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
     output().print(summary(point, runs))
     if verify:
         _verify(scene, point, runs)
-
-
-def _traced(scene: Scene, config: Config) -> Workload:
-    """The scene's workload, from the cache or traced with a bar."""
-    from simmpp.commands.terminal import notice, progress_bars
-    from simmpp.workload.store import workload_for
-
-    with progress_bars() as bars:
-        bar = bars.add_task("tracing rays", total=None)
-        return workload_for(
-            scene,
-            config.picture,
-            progress=lambda done, total: bars.update(bar, completed=done, total=total),
-            notice=notice,
-        )
 
 
 def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> None:

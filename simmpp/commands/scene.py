@@ -111,10 +111,9 @@ def _cell(value: object) -> str:
 
 def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
-    from simmpp.commands.terminal import notice
+    from simmpp.commands.tracing import traced
     from simmpp.workload.picture import Picture
     from simmpp.workload.shading import render, save_png
-    from simmpp.workload.store import workload_for
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)
-    save_png(render(scene, picture, workload_for(scene, picture, notice=notice)), path)
+    save_png(render(scene, picture, traced(scene, picture)), path)

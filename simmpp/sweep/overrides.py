@@ -19,6 +19,8 @@ _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
     ("policy",): long_policies,
     ("machine", "test"): long_test,
 }
+_ALTERNATIVES = {("memory", "bytes"): "fraction", ("memory", "fraction"): "bytes"}
+"""Keys that say the same in another way: setting one takes the other back."""
 
 
 def override(data: dict[str, Any], assignment: str, places: Places) -> None:
@@ -42,6 +44,7 @@ def set_key(data: dict[str, Any], key: str, value: object, places: Places, place
         nodes = [child for node in nodes for child in _children(*node, part, path[:depth])]
     for within, node in nodes:
         node[path[-1]] = value
+        node.pop(_ALTERNATIVES.get(path, ""), None)
         _replace(places, (*within, path[-1]), place)
 
 

@@ -108,6 +108,13 @@ def test_set_writes_short_forms_out() -> None:
     assert (test.sphere_ps, test.cone_ps) == (1_000_000, 2_000_000)
 
 
+def test_set_takes_back_what_said_the_same_in_another_way() -> None:
+    assert load(S + "memory: {fraction: 0.2}", "memory.bytes=1 MB").memory.bytes == 1_000_000
+    assert load(S + "memory: {bytes: 1 MB}", "memory.fraction=1").memory.bytes is None
+    config = load(S + "memory: {fraction: 0.2}\nsweep: {memory.bytes: [1 MB]}")
+    assert config.memory.fraction == Fraction(1, 5)
+
+
 def test_the_last_set_wins() -> None:
     assert load(S + "processors: 8", "processors=16", "processors=32").processors == 32
 
