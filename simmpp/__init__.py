@@ -1,1 +1,67 @@
+"""Object, ray or concurrent dataflow? Ray tracing a partitioned scene on a simulated machine.
 
+What the commands do, from Python::
+
+    import simmpp
+
+    scene = simmpp.load_scene("mountain:5")
+    workload = simmpp.trace(scene, simmpp.Picture(resolution=128))
+    machine = simmpp.make_machine("t3e", processors=64)
+    placement = simmpp.place(workload, 64, simmpp.Memory(), simmpp.PlacementRules(), seed=0)
+    result = simmpp.simulate(workload, machine, placement, simmpp.PolicyParameters("concurrent"))
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from simmpp.engine.result import Result
+    from simmpp.engine.simulate import simulate
+    from simmpp.machine.presets import machine as make_machine
+    from simmpp.placement.place import place
+    from simmpp.placement.placement import Memory, PlacementRules
+    from simmpp.policy.parameters import PolicyParameters
+    from simmpp.report.profit import profits
+    from simmpp.scene.load import load_scene
+    from simmpp.workload.picture import Picture
+    from simmpp.workload.tracer import trace
+
+_HOME = {
+    "Memory": "simmpp.placement.placement:Memory",
+    "Picture": "simmpp.workload.picture:Picture",
+    "PlacementRules": "simmpp.placement.placement:PlacementRules",
+    "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
+    "Result": "simmpp.engine.result:Result",
+    "load_scene": "simmpp.scene.load:load_scene",
+    "make_machine": "simmpp.machine.presets:machine",
+    "place": "simmpp.placement.place:place",
+    "profits": "simmpp.report.profit:profits",
+    "simulate": "simmpp.engine.simulate:simulate",
+    "trace": "simmpp.workload.tracer:trace",
+}
+
+__all__ = [
+    "Memory",
+    "Picture",
+    "PlacementRules",
+    "PolicyParameters",
+    "Result",
+    "load_scene",
+    "make_machine",
+    "place",
+    "profits",
+    "simulate",
+    "trace",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import on first use: ``simmpp --help`` must not wait for numba."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
+    module, _, attribute = _HOME[name].partition(":")
+    value = getattr(import_module(module), attribute)
+    globals()[name] = value
+    return value
