@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 UNLIMITED = 0
 """Bandwidth (bytes per second) of a copy or link that takes no time."""
 
-LONGEST_PS = 1000 * 10**12
-"""Longest cost of one thing, 1000 s: the clock is int64 picoseconds and ends after 106 days."""
+LONGEST_PS = 10 * 10**12
+"""Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
 MOST_BYTES = 2**60
-MOST_BYTES_PER_S = 2**60
+LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 2**60
 
 A_TIME = "a time such as '12 us'"
 A_SIZE = "a size such as '64 MB'"
@@ -97,7 +97,7 @@ def half_up(number: Fraction) -> int:
 def picoseconds(value: object) -> int:
     """``"12 us"`` -> 12000000; halves of a picosecond go up, 0 needs no unit.
 
-    Raises ConfigError for anything else but a time up to 1000 s.
+    Raises ConfigError for anything else but a time up to 10 s.
     """
     return half_up(_quantity(value, "picosecond", A_TIME, LONGEST_PS))
 
@@ -116,14 +116,13 @@ def byte_count(value: object) -> int:
 def bytes_per_second(value: object) -> int:
     """``"340 MB/s"`` -> 340000000, ``"unlimited"`` -> UNLIMITED.
 
-    Raises ConfigError for anything else but at least one byte per second: a bandwidth of nothing
-    would never end.
+    Raises ConfigError for anything else but at least 1 kB/s: a bandwidth of nothing never ends.
     """
     if value == "unlimited":
         return UNLIMITED
     rate = half_up(_quantity(value, "byte / second", A_BANDWIDTH, MOST_BYTES_PER_S))
-    if rate < 1:
-        raise ConfigError(f"value {shown(value)}: expected {A_BANDWIDTH}")
+    if rate < LEAST_BYTES_PER_S:
+        raise ConfigError(f"value {shown(value)}: expected {A_BANDWIDTH}, at least 1 kB/s")
     return rate
 
 

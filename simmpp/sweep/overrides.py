@@ -19,7 +19,10 @@ _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
     ("policy",): long_policies,
     ("machine", "test"): long_test,
 }
-_ALTERNATIVES = {("memory", "bytes"): "fraction", ("memory", "fraction"): "bytes"}
+_ALTERNATIVES: dict[tuple[str, ...], str] = {
+    ("memory", "bytes"): "fraction",
+    ("memory", "fraction"): "bytes",
+}
 """Keys that say the same in another way: setting one takes the other back."""
 
 

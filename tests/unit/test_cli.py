@@ -129,6 +129,18 @@ def test_mistakes() -> None:
     )
     assert refused("run", "c.yaml", "--picture", "no/p.png").startswith("simmpp: error: --picture:")
     assert refused("run", "c.yaml", "--out", "c.yaml").startswith("simmpp: error: --out:")
+    expected = "expected costs of tests and rays that sum up to less than 53 days"
+    slow = (
+        "--set",
+        "machine.test=10 s",
+        "--set",
+        "picture.resolution=700",
+        "--set",
+        "processors=1",
+    )
+    assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s") == (
+        f"simmpp: error: machine: {expected}"
+    )
     assert refused("scene", "tetra:0").startswith("simmpp: error: ")
     assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")
     assert refused("machine", "cm5").startswith("simmpp: error: value 'cm5': expected a preset")

@@ -18,12 +18,12 @@ from simmpp.errors import ConfigError
         ("13.33 ns", 13_330),
         ("1e-6 s", 1_000_000),
         ("5 µs", 5_000_000),
-        ("1 min", 60 * 10**12),
+        ("0.1 min", 6 * 10**12),
         ("0.5 ps", 1),
         ("0.4 ps", 0),
         (0, 0),
         ("0 s", 0),
-        ("1000 s", 10**15),
+        ("10 s", 10**13),
     ],
 )
 def test_times(text: object, expected_ps: int) -> None:
@@ -70,7 +70,7 @@ WRONG_TIMES = [
     "nan s",
     "inf s",
     "1e99 s",
-    "1001 s",
+    "11 s",
     "5 MB",
     "1 s/s",
     "2 * 3 s",
@@ -90,7 +90,7 @@ def test_wrong_times_say_what_was_expected(value: object) -> None:
         units.picoseconds(value)
 
 
-@pytest.mark.parametrize("value", [0, "0 MB/s", "0.1 B/s", "fast", "-1 B/s", "5 MB", "8 Mb/s"])
+@pytest.mark.parametrize("value", [0, "0 MB/s", "999 B/s", "fast", "-1 B/s", "5 MB", "8 Mb/s"])
 def test_wrong_bandwidths(value: object) -> None:
     with pytest.raises(ConfigError, match="expected a bandwidth"):
         units.bytes_per_second(value)
@@ -116,15 +116,14 @@ def test_text_for_people() -> None:
     assert units.format_bytes_per_s(units.UNLIMITED) == "unlimited"
 
 
-@given(st.integers(1, 999_999), st.sampled_from(["ps", "ns", "us", "ms"]))
+@given(st.integers(1, 999_999), st.sampled_from(["ps", "ns", "us"]))
 def test_what_is_printed_is_read_back(number: int, unit: str) -> None:
     time_ps = units.picoseconds(f"{number} {unit}")
     assert units.picoseconds(units.format_ps(time_ps)) == time_ps
 
 
-@given(st.decimals("0", "1000", places=12, allow_nan=False))
-def test_every_picosecond_of_a_second_counts(seconds: object) -> None:
-    """A double would lose the last digits from 10^4 seconds on; fractions lose none anywhere."""
+@given(st.decimals("0", "10", places=12, allow_nan=False))
+def test_no_picosecond_is_lost(seconds: object) -> None:
     text = f"{seconds:f}"
     assert units.picoseconds(f"{text} s") == int(Fraction(text) * 10**12)
 
