@@ -40,7 +40,15 @@ from simmpp.engine.memory import (
 from simmpp.engine.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.sending import copy_ps, send
 from simmpp.engine.tables import find, give_back
-from simmpp.engine.waiting import admit_object, file_ray, is_in_memory, partner_of, touch, unpin
+from simmpp.engine.waiting import (
+    admit_object,
+    file_ray,
+    is_in_memory,
+    note_exchange,
+    partner_of,
+    touch,
+    unpin,
+)
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 SLEEP = -1
@@ -117,11 +125,11 @@ def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> No
     """Remember the load in a header, and whom rays or objects came from."""
     refreshes = s.refresh_ps != NONE and kind in (OBJECT, RAYS)
     if s.listens or refreshes:
-        partner = partner_rows(s)[partner_of(s, me, source)]
-        partner.load = load
-        partner.heard_ps = now_ps
+        row = partner_of(s, me, source)
+        partner_rows(s)[row].load = load
+        partner_rows(s)[row].heard_ps = now_ps
         if refreshes:
-            partner.exchanged = 1
+            note_exchange(s, me, row)
 
 
 @njit

@@ -13,9 +13,9 @@ from __future__ import annotations
 from simmpp.compiled import njit
 from simmpp.engine.layout import EXACT, NO_INFO, NONE, PIGGYBACK, Row, Run
 from simmpp.engine.memory import (
+    exchanged,
     owners,
     partner_rows,
-    partners,
     pes,
     rays,
     sendable,
@@ -26,7 +26,7 @@ from simmpp.engine.memory import (
     want_rows,
 )
 from simmpp.engine.sending import send
-from simmpp.engine.tables import clear, find, first, following, sort_by_key
+from simmpp.engine.tables import Lists, clear, first, following, sort_by_key
 from simmpp.engine.waiting import drop_if_idle, set_partner_sendable, set_unasked, withdraw
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.policy.rules import allows
@@ -72,15 +72,20 @@ def _send_rays(s: Run, me: int, nothing_else: int, now_ps: int) -> int:
 @njit
 def _collect_owners(s: Run, me: int, nothing_else: int) -> int:
     """Partners that rays may be sent to, in ring order from me, into ``sort_items``."""
-    n = 0
+    n = _collect_partners(s, me, unsent(s), 2 * me + 1, 0)
+    return _collect_partners(s, me, unsent(s), 2 * me, n) if nothing_else else n
+
+
+@njit
+def _collect_partners(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
+    """Add the partners of one list to the first n of ``sort_items``, in ring order from me."""
     nb = s.processors
-    for which in range(2 * me if nothing_else else 2 * me + 1, 2 * me + 2):
-        row = first(unsent(s), which)
-        while row >= 0:
-            sort_keys(s)[n] = (partner_rows(s)[row].key % nb - me) % nb
-            sort_items(s)[n] = row
-            n += 1
-            row = following(unsent(s), row)
+    row = first(lists, which)
+    while row >= 0:
+        sort_keys(s)[n] = (partner_rows(s)[row].key % nb - me) % nb
+        sort_items(s)[n] = row
+        n += 1
+        row = following(lists, row)
     sort_by_key(sort_keys(s), sort_items(s), n)
     return n
 
@@ -163,11 +168,9 @@ def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
     clock_ps = now_ps
     if s.load_info != PIGGYBACK:
         return clock_ps
-    for distance in range(1, s.processors):
-        other = (me + distance) % s.processors
-        row = find(partners(s), me * s.processors + other)
-        if row == NONE or not partner_rows(s)[row].exchanged:
-            continue
-        if clock_ps - partner_rows(s)[row].sent_ps >= s.refresh_ps:
+    for i in range(_collect_partners(s, me, exchanged(s), me, 0)):
+        partner = partner_rows(s)[sort_items(s)[i]]
+        if clock_ps - partner.sent_ps >= s.refresh_ps:
+            other = partner.key % s.processors
             clock_ps = send(s, me, other, LOAD, NONE, NONE, NONE, 0, 0, clock_ps)
     return clock_ps

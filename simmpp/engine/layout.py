@@ -119,7 +119,11 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "object_bytes": I8,
     "test_ps": I8,
     "owners": I4,
-    "resident": I1,  # bit o of the row_bytes at k * row_bytes: PE k holds a replica of object o
+    # Replicas as bits (bit o of the row_bytes at k * row_bytes: PE k holds object o) or, where
+    # that takes less memory, as sorted ids (CSR); the other form is empty.
+    "resident": I1,
+    "replica_offsets": I8,
+    "replica_objects": I4,
     # of the run
     "copy_costs": COPY,
     "sent_by_kind": I8,
@@ -142,6 +146,9 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     # Partners with sendable rays: list 2 k of PE k, or 2 k + 1 from batch rays on.
     "unsent_ends": I4,
     "unsent_links": I4,
+    # Partners that rays or objects were exchanged with, one list per PE (for refresh).
+    "exchanged_ends": I4,
+    "exchanged_links": I4,
     # Wants with sendable rays: one list per partner.
     "sendable_ends": I4,
     "sendable_links": I4,
@@ -173,7 +180,7 @@ PARAMETERS = (
     "quantum",
     "depth_first",
     "transient",
-    "row_bytes",  # of ``resident``; 0 if no PE holds a replica
+    "row_bytes",  # of ``resident``; 0 if replicas are not kept as bits
     "all_resident",
     "sends",
     "asks",

@@ -66,6 +66,18 @@ def resident(s: Run) -> Any:
 
 
 @njit
+def replica_offsets(s: Run) -> Any:
+    """(nb + 1,) int64, or empty."""
+    return carray(_pointer(s.replica_offsets_at), s.replica_offsets_n, I8)
+
+
+@njit
+def replica_objects(s: Run) -> Any:
+    """(replicas,) int32: sorted for each PE."""
+    return carray(_pointer(s.replica_objects_at), s.replica_objects_n, I4)
+
+
+@njit
 def copy_costs(s: Run) -> Any:
     """(8,) COPY."""
     return carray(_pointer(s.copy_costs_at), s.copy_costs_n, COPY)
@@ -149,6 +161,14 @@ def recent(s: Run) -> Lists:
 def unsent(s: Run) -> Lists:
     """Partners with sendable rays, two lists per PE."""
     return _lists(s.unsent_ends_at, s.unsent_ends_n, s.unsent_links_at, s.unsent_links_n)
+
+
+@njit
+def exchanged(s: Run) -> Lists:
+    """Partners that rays or objects were exchanged with, one list per PE."""
+    return _lists(
+        s.exchanged_ends_at, s.exchanged_ends_n, s.exchanged_links_at, s.exchanged_links_n
+    )
 
 
 @njit

@@ -16,7 +16,7 @@ from simmpp.engine.memory import (
     sent_by_kind,
 )
 from simmpp.engine.tables import take
-from simmpp.engine.waiting import partner_of
+from simmpp.engine.waiting import note_exchange, partner_of
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.machine.network import transfer_ps
 from simmpp.machine.torus import hops
@@ -58,10 +58,10 @@ def send(
     sent_by_kind(s)[kind] += 1
     s.bytes_sent += payload_bytes + s.header_bytes
     if s.refresh_ps != NONE:
-        partner = partner_rows(s)[partner_of(s, me, destination)]
-        partner.sent_ps = depart_ps
+        partner = partner_of(s, me, destination)
+        partner_rows(s)[partner].sent_ps = depart_ps
         if kind in (OBJECT, RAYS):
-            partner.exchanged = 1
+            note_exchange(s, me, partner)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return depart_ps

@@ -133,6 +133,8 @@ def _arrays(
         "recent_links": 2 * n_wants,
         "unsent_ends": 4 * nb,
         "unsent_links": 2 * n_partners,
+        "exchanged_ends": 2 * nb,
+        "exchanged_links": 2 * n_partners,
         "sendable_ends": 2 * n_partners,
         "sendable_links": 2 * n_wants,
         "outbox": most_sent,
@@ -146,34 +148,57 @@ def _arrays(
     for name in ("wants_marks", "partners_marks", "messages_marks"):
         arrays[name] = np.array([NONE, 0])
     arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
-    return arrays | {
-        "itinerary_offsets": workload.itinerary_offsets,
-        "itinerary_objects": workload.itinerary_objects,
-        "child_offsets": workload.child_offsets,
-        "object_bytes": workload.object_bytes,
-        "test_ps": machine.test.per_object_ps(workload.object_kinds, workload.object_triangles),
-        "owners": placement.owners,
-        "resident": _resident_bits(placement, n_objects),
-        "copy_costs": np.array(
-            [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)], COPY
-        ),
-    }
+    return (
+        arrays
+        | _replicas(placement, n_objects)
+        | {
+            "itinerary_offsets": workload.itinerary_offsets,
+            "itinerary_objects": workload.itinerary_objects,
+            "child_offsets": workload.child_offsets,
+            "object_bytes": workload.object_bytes,
+            "test_ps": machine.test.per_object_ps(workload.object_kinds, workload.object_triangles),
+            "owners": placement.owners,
+            "copy_costs": np.array(
+                [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)],
+                COPY,
+            ),
+        }
+    )
 
 
 def _power_of_two(n: int) -> int:
     return 1 << max(4, (n - 1).bit_length())
 
 
-def _resident_bits(placement: Placement, n_objects: int) -> NDArray[np.uint8]:
-    if len(placement.replica_objects) == 0:
-        return np.zeros(0, np.uint8)
-    bits = np.zeros((placement.processors, _row_bytes(placement, n_objects)), np.uint8)
+def _replicas(placement: Placement, n_objects: int) -> dict[str, NDArray[Any]]:
+    """Replicas as bits or as sorted ids, whichever takes less memory."""
+    row_bytes = _row_bytes(placement, n_objects)
+    if row_bytes == 0:
+        return {
+            "resident": np.zeros(0, np.uint8),
+            "replica_offsets": placement.replica_offsets,
+            "replica_objects": _sorted_rows(placement),
+        }
+    bits = np.zeros((placement.processors, row_bytes), np.uint8)
     _set_bits(bits, placement.replica_offsets, placement.replica_objects)
-    return bits.reshape(-1)
+    nothing = np.zeros(0, np.int64)
+    return {
+        "resident": bits.reshape(-1),
+        "replica_offsets": nothing,
+        "replica_objects": nothing,
+    }
 
 
 def _row_bytes(placement: Placement, n_objects: int) -> int:
-    return (n_objects + 7) // 8 if len(placement.replica_objects) else 0
+    row_bytes = (n_objects + 7) // 8
+    as_ids = placement.replica_objects.nbytes
+    return row_bytes if row_bytes * placement.processors <= as_ids else 0
+
+
+def _sorted_rows(placement: Placement) -> NDArray[np.int32]:
+    """The replicas of each PE by their ids."""
+    holders = np.repeat(np.arange(placement.processors), np.diff(placement.replica_offsets))
+    return placement.replica_objects[np.lexsort((placement.replica_objects, holders))]
 
 
 @njit

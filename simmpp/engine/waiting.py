@@ -5,6 +5,7 @@ from __future__ import annotations
 from simmpp.compiled import njit
 from simmpp.engine.layout import NONE, Run
 from simmpp.engine.memory import (
+    exchanged,
     object_bytes,
     owners,
     partner_rows,
@@ -12,6 +13,8 @@ from simmpp.engine.memory import (
     pes,
     rays,
     recent,
+    replica_objects,
+    replica_offsets,
     resident,
     sendable,
     unasked,
@@ -28,12 +31,38 @@ def is_in_memory(s: Run, me: int, wanted: int) -> bool:
     """Is the object resident, or in transient memory?"""
     if owners(s)[wanted] == me or s.all_resident:
         return True
-    if s.row_bytes and resident(s)[me * s.row_bytes + (wanted >> 3)] >> (wanted & 7) & 1:
+    if _is_replica(s, me, wanted):
         return True
     if s.transient == 0:
         return False
     want = find(wants(s), me * s.n_objects + wanted)
     return want != NONE and want_rows(s)[want].transient == 1
+
+
+@njit
+def _is_replica(s: Run, me: int, wanted: int) -> bool:
+    """Does the PE hold a replica of the object for good?"""
+    if s.row_bytes > 0:
+        return resident(s)[me * s.row_bytes + (wanted >> 3)] >> (wanted & 7) & 1 == 1
+    if s.replica_objects_n == 0:
+        return False
+    low, high = replica_offsets(s)[me], replica_offsets(s)[me + 1]
+    end = high
+    while low < high:
+        middle = (low + high) // 2
+        if replica_objects(s)[middle] < wanted:
+            low = middle + 1
+        else:
+            high = middle
+    return low < end and replica_objects(s)[low] == wanted
+
+
+@njit
+def note_exchange(s: Run, me: int, partner: int) -> None:
+    """Rays or objects went from one to the other: loads are refreshed between them."""
+    if partner_rows(s)[partner].exchanged == 0:
+        partner_rows(s)[partner].exchanged = 1
+        append(exchanged(s), me, partner)
 
 
 @njit
