@@ -9,8 +9,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from simmpp.compiled import njit
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 
 WIDTH = 8
 BINS = 16
@@ -27,8 +31,8 @@ class Tree(NamedTuple):
     """(nodes, 8) int32: a node, or ~leaf, or EMPTY."""
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def build(boxes):
+@njit
+def build(boxes: Floats) -> tuple[Floats, Ints]:
     """Build the tree over ``boxes`` (n, 6) float64, low then high corner; leaf i is box i.
 
     Returns the arrays of a :class:`Tree`. Equal boxes give equal trees.
@@ -58,8 +62,10 @@ def build(boxes):
     return bounds[:used].copy(), children[:used].copy()
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _cut_in_eight(boxes, order, scratch, low, high):
+@njit
+def _cut_in_eight(
+    boxes: Floats, order: Ints, scratch: Ints, low: int, high: int
+) -> NDArray[np.int64]:
     """Positions that cut order[low:high] into at most eight segments."""
     cuts = np.empty(WIDTH + 1, np.int64)
     cuts[0], cuts[1] = low, high
@@ -85,36 +91,36 @@ def _cut_in_eight(boxes, order, scratch, low, high):
     return cuts[: n + 1]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _cost(boxes, order, low, high):
+@njit
+def _cost(boxes: Floats, order: Ints, low: int, high: int) -> float:
     """Surface times number of boxes; -1 for a single one, which is never split."""
     return -1.0 if high - low < 2 else _area(_union(boxes, order, low, high)) * (high - low)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _union(boxes, order, low, high):
+@njit
+def _union(boxes: Floats, order: Ints, low: int, high: int) -> Floats:
     box = boxes[order[low]].copy()
     for i in range(low + 1, high):
         _extend(box, boxes[order[i]])
     return box
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _extend(box, other):
+@njit
+def _extend(box: Floats, other: Floats) -> None:
     for axis in range(3):
         box[axis] = min(box[axis], other[axis])
         box[3 + axis] = max(box[3 + axis], other[3 + axis])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _area(box):
+@njit
+def _area(box: Floats) -> float:
     """Half the surface of a box; 0 for one that is inside out."""
     x, y, z = box[3] - box[0], box[4] - box[1], box[5] - box[2]
     return 0.0 if x < 0.0 else x * y + y * z + z * x
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _split(boxes, order, scratch, low, high):
+@njit
+def _split(boxes: Floats, order: Ints, scratch: Ints, low: int, high: int) -> int:
     """Reorder order[low:high] about the cheapest plane between bins; its position."""
     axis, start, extent = _longest_axis(boxes, order, low, high)
     middle = low
@@ -125,8 +131,8 @@ def _split(boxes, order, scratch, low, high):
     return middle if low < middle < high else (low + high) // 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _longest_axis(boxes, order, low, high):
+@njit
+def _longest_axis(boxes: Floats, order: Ints, low: int, high: int) -> tuple[int, float, float]:
     """Axis on which the boxes' centres spread most; twice its least centre, twice the spread."""
     best, start, extent = 0, 0.0, -1.0
     for axis in range(3):
@@ -139,13 +145,15 @@ def _longest_axis(boxes, order, low, high):
     return best, start, extent
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _bin(boxes, i, axis, start, per_bin):
+@njit
+def _bin(boxes: Floats, i: int, axis: int, start: float, per_bin: float) -> int:
     return int((boxes[i, axis] + boxes[i, 3 + axis] - start) * per_bin)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _cheapest_plane(boxes, order, low, high, axis, start, per_bin):
+@njit
+def _cheapest_plane(
+    boxes: Floats, order: Ints, low: int, high: int, axis: int, start: float, per_bin: float
+) -> int:
     """The first bin of the upper part, by the least sum of surface times number."""
     count = np.zeros(BINS, np.int64)
     box = np.empty((BINS, 6))
@@ -163,11 +171,21 @@ def _cheapest_plane(boxes, order, low, high, axis, start, per_bin):
             _extend(below, box[k])
             n += count[k]
             cost[k + 1 if sign == 1 else k] += _area(below) * n
-    return 1 + np.argmin(cost[1:])
+    return int(1 + np.argmin(cost[1:]))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _partition(boxes, order, scratch, low, high, axis, start, per_bin, plane):
+@njit
+def _partition(
+    boxes: Floats,
+    order: Ints,
+    scratch: Ints,
+    low: int,
+    high: int,
+    axis: int,
+    start: float,
+    per_bin: float,
+    plane: int,
+) -> int:
     """Stable partition of order[low:high] by bin < plane; where the upper part begins."""
     middle, above = low, 0
     for position in range(low, high):

@@ -10,11 +10,16 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from simmpp.compiled import njit_reading
 from simmpp.workload.bvh import WIDTH
+from simmpp.workload.geometry import Shapes
 from simmpp.workload.workload import CONE, SPHERE
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Row = tuple[float, float, float, float, float, float, float, float, float]
 
 TOLERANCE = 1e-12
 """By how much barycentric coordinates may leave a triangle, so that shared edges do not leak."""
@@ -36,23 +41,23 @@ class Ray(NamedTuple):
     iz: float
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def ray_of(origins, directions, i):
+@njit_reading
+def ray_of(origins: Floats, directions: Floats, i: int) -> Ray:
     """Ray ``i`` of arrays (n, 3) float64."""
     dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
     ox, oy, oz = origins[i, 0], origins[i, 1], origins[i, 2]
     return Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _inverse(component):
+@njit_reading
+def _inverse(component: float) -> float:
     if abs(component) > 1.0 / STEEPEST:
         return 1.0 / component
     return math.copysign(STEEPEST, component)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def entry(boxes, i, ray):
+@njit_reading
+def entry(boxes: Floats, i: int, ray: Ray) -> float:
     """Where ``ray`` enters box ``i`` of (n, 6) float64: 0 from inside, infinity if it does not."""
     ax, bx = (boxes[i, 0] - ray.ox) * ray.ix, (boxes[i, 3] - ray.ox) * ray.ix
     ay, by = (boxes[i, 1] - ray.oy) * ray.iy, (boxes[i, 4] - ray.oy) * ray.iy
@@ -62,8 +67,8 @@ def entry(boxes, i, ray):
     return enter if enter <= leave else np.inf
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def entries(bounds, node, ray, found):
+@njit_reading
+def entries(bounds: Floats, node: int, ray: Ray, found: Floats) -> None:
     """:func:`entry` of the eight boxes of a node of a tree, into ``found`` (8,) float64."""
     x, y, z = 0 if ray.ix > 0 else 3, 1 if ray.iy > 0 else 4, 2 if ray.iz > 0 else 5
     for k in range(WIDTH):
@@ -81,8 +86,8 @@ def entries(bounds, node, ray, found):
         found[k] = enter if enter <= leave else np.inf
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def hit_triangle(triangle, ray, t_min):
+@njit_reading
+def hit_triangle(triangle: Row, ray: Ray, t_min: float) -> float:
     """Distance to ``triangle`` (9,) float64 beyond ``t_min`` (Moeller and Trumbore 1997)."""
     e1x, e1y, e1z = triangle[3], triangle[4], triangle[5]
     e2x, e2y, e2z = triangle[6], triangle[7], triangle[8]
@@ -105,8 +110,8 @@ def hit_triangle(triangle, ray, t_min):
     return t if t > t_min else np.inf
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def hit_sphere(shape, ray, t_min):
+@njit_reading
+def hit_sphere(shape: Row, ray: Ray, t_min: float) -> float:
     """Distance to a sphere; seen from the point of the ray nearest to its centre."""
     x, y, z = ray.ox - shape[0], ray.oy - shape[1], ray.oz - shape[2]
     closest = -(x * ray.dx + y * ray.dy + z * ray.dz)
@@ -120,8 +125,8 @@ def hit_sphere(shape, ray, t_min):
     return closest + half if closest + half > t_min else np.inf
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def hit_cone(shape, ray, t_min):
+@njit_reading
+def hit_cone(shape: Row, ray: Ray, t_min: float) -> float:
     """Distance to an open cone: |w + v t|^2 = (radius + growth z)^2 with 0 <= z <= height."""
     x, y, z = ray.ox - shape[0], ray.oy - shape[1], ray.oz - shape[2]
     ax, ay, az, height, growth = shape[3], shape[4], shape[5], shape[6], shape[8]
@@ -145,8 +150,8 @@ def hit_cone(shape, ray, t_min):
     return best
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def row_of(surfaces, k):
+@njit_reading
+def row_of(surfaces: Floats, k: int) -> Row:
     """Row ``k`` of ``surfaces`` (rows, 9) float64 as nine numbers."""
     return (
         surfaces[k, 0],
@@ -161,42 +166,64 @@ def row_of(surfaces, k):
     )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def hit_object(shapes, i, ray, enter, bound, stack, found):
+@njit_reading
+def hit_object(
+    shapes: Shapes, i: int, ray: Ray, enter: float, bound: float, stack: Ints, found: Floats
+) -> tuple[float, int]:
     """Distance to object ``i``, whose box ``ray`` enters at ``enter``, and the row hit.
 
     A distance before the box is a rounding: it is taken to be ``enter``. So no hit comes before
     its box, and a search that ends at a hit has seen every box entered until then. Hits beyond
-    ``bound`` may be missed, or not be the nearest.
+    ``bound`` may be missed, or not be the nearest. ``stack`` and ``found`` are memory.
     """
-    objects, surfaces, bounds, children, t_min = shapes
-    kind, first, after, root = objects[i, 0], objects[i, 1], objects[i, 2], objects[i, 3]
-    best, row = np.inf, first
+    root = shapes.objects[i, 3]
+    if root >= 0:
+        t, row = _hit_tree(shapes, root, ray, bound, stack, found)
+    else:
+        t, row = _hit_rows(shapes, i, ray)
+    return max(t, enter), row
+
+
+@njit_reading
+def _hit_rows(shapes: Shapes, i: int, ray: Ray) -> tuple[float, int]:
+    """Nearest of the few rows of object ``i``."""
+    kind, first, after = shapes.objects[i, 0], shapes.objects[i, 1], shapes.objects[i, 2]
+    best, nearest = np.inf, first
     for k in range(first, after):
-        shape = row_of(surfaces, k)
+        row = row_of(shapes.surfaces, k)
         if kind == SPHERE:
-            t = hit_sphere(shape, ray, t_min)
+            t = hit_sphere(row, ray, shapes.t_min)
         elif kind == CONE:
-            t = hit_cone(shape, ray, t_min)
+            t = hit_cone(row, ray, shapes.t_min)
         else:
-            t = hit_triangle(shape, ray, t_min)
+            t = hit_triangle(row, ray, shapes.t_min)
         if t < best:
-            best, row = t, k
-    depth = 1 if root >= 0 else 0
+            best, nearest = t, k
+    return best, nearest
+
+
+@njit_reading
+def _hit_tree(
+    shapes: Shapes, root: int, ray: Ray, bound: float, stack: Ints, found: Floats
+) -> tuple[float, int]:
+    """Nearest triangle below ``root``, ties by (distance, row)."""
+    best, nearest = np.inf, -1
     stack[0] = root
+    depth = 1
     while depth > 0:
         depth -= 1
         node = stack[depth]
-        entries(bounds, node, ray, found)
+        entries(shapes.bounds, node, ray, found)
         for k in range(WIDTH):
             if not (found[k] <= min(best, bound) and found[k] < np.inf):
                 continue
-            child = children[node, k]
+            child = shapes.children[node, k]
             if child >= 0:
                 stack[depth] = child
                 depth += 1
                 continue
-            t = max(hit_triangle(row_of(surfaces, ~child), ray, t_min), found[k])
-            if t < best or (t == best and ~child < row):
-                best, row = t, ~child
-    return max(best, enter), row
+            t = hit_triangle(row_of(shapes.surfaces, ~child), ray, shapes.t_min)
+            t = max(t, found[k])
+            if t < best or (t == best and ~child < nearest):
+                best, nearest = t, ~child
+    return best, nearest

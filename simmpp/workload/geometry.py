@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.scene.scene import Cone, MeshPart, Polygon, Scene, SceneObject, Sphere
+from simmpp.scene.scene import Cone, Polygon, Scene, SceneObject, Sphere
 from simmpp.scene.triangles import triangles
 from simmpp.workload import bvh
 from simmpp.workload.normalise import Frame

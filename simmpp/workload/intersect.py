@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
-from numba import njit
 from numpy.typing import NDArray
 
+from simmpp.compiled import njit
 from simmpp.workload.exact import entry, ray_of
 from simmpp.workload.geometry import Geometry
 from simmpp.workload.proxies import proxy_mesh
@@ -40,13 +40,17 @@ class Intersector:
         ----------
         origins, directions : (n, 3) float64, normalised and finite; directions of length 1
         """
+        if origins.shape != directions.shape or origins.shape[1:] != (3,):
+            raise ValueError(f"rays of shapes {origins.shape} and {directions.shape}, not (n, 3)")
         claims = np.full((len(origins), 2), -1, dtype=np.int32)
-        for start in range(0, len(origins) if self._scene is not None else 0, BATCH):
+        if self._scene is None:
+            return claims
+        for start in range(0, len(origins), BATCH):
             part = slice(start, start + BATCH)
             which, origins32, directions32 = _start_in_box(
                 self._box,
-                np.ascontiguousarray(origins[part]),
-                np.ascontiguousarray(directions[part]),
+                np.ascontiguousarray(origins[part], dtype=np.float64),
+                np.ascontiguousarray(directions[part], dtype=np.float64),
             )
             if len(which):
                 first = self._scene.run(origins32, directions32, query="INTERSECT")
@@ -55,8 +59,10 @@ class Intersector:
         return claims
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _start_in_box(box, origins, directions):
+@njit
+def _start_in_box(
+    box: NDArray[np.float64], origins: NDArray[np.float64], directions: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.float32], NDArray[np.float32]]:
     """Rays that enter the scene's box, as float32, moved to where they enter it."""
     which = np.empty(len(origins), np.int64)
     origins32 = np.empty((len(origins), 3), np.float32)

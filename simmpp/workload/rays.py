@@ -12,20 +12,29 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from simmpp.scene.scene import Scene
+from simmpp.compiled import njit, njit_reading
+from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.camera import primary_rays
 from simmpp.workload.candidates import work_for
 from simmpp.workload.exact import ray_of
 from simmpp.workload.geometry import Geometry
 from simmpp.workload.normalise import Frame
 from simmpp.workload.picture import Picture
-from simmpp.workload.surface import reflected, refracted, surface_at
+from simmpp.workload.surface import (
+    Surface,
+    faces,
+    reflected,
+    refracted,
+    surface_at,
+    towards,
+)
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+New = tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints]
 
 
 class Rays(NamedTuple):
@@ -46,7 +55,7 @@ class Rays(NamedTuple):
 
     def part(self, start: int, stop: int) -> Rays:
         """Rays start ... stop - 1."""
-        return Rays(*(array[start:stop] for array in self))
+        return Rays._make(array[start:stop] for array in self)
 
 
 @dataclass(frozen=True)
@@ -114,19 +123,29 @@ def children(
         rules.refraction and deeper,
         first,
     )
-    return Rays(*arrays), counts
+    return Rays._make(arrays), counts
 
 
 def joined(parts: list[Rays]) -> Rays:
     """Runs of rays, one after the other."""
-    return Rays(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return Rays._make(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit
 def _spawn(
-    geometry, origins, directions, kinds, hits, distances, lights, reflection, refraction, first
-):
-    shapes, boxes, box, normals, n_triangles, reflects, transmits, ior = geometry
+    geometry: Geometry,
+    origins: Floats,
+    directions: Floats,
+    kinds: NDArray[np.uint8],
+    hits: Ints,
+    distances: Floats,
+    lights: Floats,
+    reflection: bool,
+    refraction: bool,
+    first: int,
+) -> tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints, Ints]:
+    shapes, normals, ior = geometry.shapes, geometry.normals, geometry.ior
+    reflects, transmits = geometry.reflects, geometry.transmits
     most = 0
     for i in range(len(kinds)):
         if kinds[i] != SHADOW and hits[i] >= 0:
@@ -172,8 +191,17 @@ def _spawn(
     )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _add(new, used, kind, parent, source, surface, direction, limit):
+@njit_reading
+def _add(
+    new: New,
+    used: int,
+    kind: int,
+    parent: int,
+    source: int,
+    surface: Surface,
+    direction: Vector,
+    limit: float,
+) -> int:
     """Append one ray that leaves ``surface``; the new number of rays."""
     origins, directions, kinds, limits, sources, parents = new
     x, y, z = direction
@@ -185,11 +213,13 @@ def _add(new, used, kind, parent, source, surface, direction, limit):
     return used + 1
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _add_shadow(new, used, parent, source, surface, light):
+@njit_reading
+def _add_shadow(
+    new: New, used: int, parent: int, source: int, surface: Surface, light: Vector
+) -> int:
     """Append a shadow ray, unless the surface faces away from the light."""
-    x, y, z = light[0] - surface.x, light[1] - surface.y, light[2] - surface.z
-    if not surface.nx * x + surface.ny * y + surface.nz * z > 0.0:
+    x, y, z = towards(surface, light[0], light[1], light[2])
+    if not faces(surface, x, y, z):
         return used
     distance = math.sqrt(x * x + y * y + z * z)
     direction = (x / distance, y / distance, z / distance)

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 
+from simmpp.compiled import cache_folder
 from simmpp.errors import WorkloadError
 from simmpp.scene.scene import Scene
 from simmpp.workload.check import check
@@ -41,7 +41,7 @@ def workload_for(
     """
     tell = notice or (lambda text: warnings.warn(text, stacklevel=3))
     digest = digest_of(scene, picture)
-    path = cache_directory() / f"{digest}.npz"
+    path = cache_folder() / f"{digest}.npz"
     if path.exists():
         try:
             return dataclasses.replace(_expected(load(path), digest, path), name=scene.name)
@@ -54,15 +54,6 @@ def workload_for(
     except OSError as error:
         tell(f"{path.parent}: the workload is not cached: {error.strerror or error}")
     return workload
-
-
-def cache_directory() -> Path:
-    """``SIMMPP_CACHE``, or the user's cache directory; ``XDG_CACHE_HOME`` counts everywhere."""
-    if os.environ.get("SIMMPP_CACHE"):
-        return Path(os.environ["SIMMPP_CACHE"])
-    if os.environ.get("XDG_CACHE_HOME"):
-        return Path(os.environ["XDG_CACHE_HOME"]) / "simmpp"
-    return Path(platformdirs.user_cache_dir("simmpp", appauthor=False))
 
 
 def save(workload: Workload, path: str | os.PathLike[str]) -> None:

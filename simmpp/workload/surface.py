@@ -6,9 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from simmpp.workload.exact import hit_object, row_of
+from simmpp.compiled import njit_reading
+from simmpp.scene.scene import Vector
+from simmpp.workload.candidates import Work
+from simmpp.workload.exact import Floats, Ray, Row, hit_object, row_of
+from simmpp.workload.geometry import Shapes
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
 
 
@@ -34,8 +37,10 @@ class Surface(NamedTuple):
     """Convex and opaque: nothing that leaves it on the outside comes back."""
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def surface_at(shapes, normals, i, ray, t, opaque, work):
+@njit_reading
+def surface_at(
+    shapes: Shapes, normals: Floats, i: int, ray: Ray, t: float, opaque: bool, work: Work
+) -> Surface:
     """The :class:`Surface` of object ``i`` that ``ray`` hits at ``t``."""
     x, y, z = ray.ox + t * ray.dx, ray.oy + t * ray.dy, ray.oz + t * ray.dz
     kind = shapes.objects[i, 0]
@@ -58,8 +63,8 @@ def surface_at(shapes, normals, i, ray, t, opaque, work):
     return Surface(x, y, z, nx, ny, nz, side * nx, side * ny, side * nz, entering, flat, convex)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _cone_normal(shape, x, y, z):
+@njit_reading
+def _cone_normal(shape: Row, x: float, y: float, z: float) -> Vector:
     """Away from the axis, tilted against the growth of the radius."""
     x, y, z = x - shape[0], y - shape[1], z - shape[2]
     ax, ay, az, growth = shape[3], shape[4], shape[5], shape[8]
@@ -69,8 +74,8 @@ def _cone_normal(shape, x, y, z):
     return x - tilt * ax, y - tilt * ay, z - tilt * az
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _triangle_normal(e):
+@njit_reading
+def _triangle_normal(e: Row) -> Vector:
     return (
         e[4] * e[8] - e[5] * e[7],
         e[5] * e[6] - e[3] * e[8],
@@ -78,16 +83,28 @@ def _triangle_normal(e):
     )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def reflected(ray, surface):
+@njit_reading
+def towards(surface: Surface, x: float, y: float, z: float) -> Vector:
+    """From the surface to a light."""
+    return x - surface.x, y - surface.y, z - surface.z
+
+
+@njit_reading
+def faces(surface: Surface, x: float, y: float, z: float) -> bool:
+    """Whether the side that the ray has hit faces a light in that direction."""
+    return surface.nx * x + surface.ny * y + surface.nz * z > 0.0
+
+
+@njit_reading
+def reflected(ray: Ray, surface: Surface) -> Vector:
     """Mirror direction."""
     nx, ny, nz = surface.nx, surface.ny, surface.nz
     cosine = 2.0 * (ray.dx * nx + ray.dy * ny + ray.dz * nz)
     return normalised(ray.dx - cosine * nx, ray.dy - cosine * ny, ray.dz - cosine * nz)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def refracted(ray, surface, ior):
+@njit_reading
+def refracted(ray: Ray, surface: Surface, ior: float) -> tuple[bool, Vector]:
     """Whether the ray passes, and Snell's direction; from inside it leaves for vacuum."""
     nx, ny, nz = surface.nx, surface.ny, surface.nz
     eta = 1.0 / ior if surface.entering else ior
@@ -101,7 +118,8 @@ def refracted(ray, surface, ior):
     )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def normalised(x, y, z):
+@njit_reading
+def normalised(x: float, y: float, z: float) -> Vector:
+    """The vector at length 1."""
     length = math.sqrt(x * x + y * y + z * z)
     return x / length, y / length, z / length

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from simmpp.compiled import njit
 from simmpp.scene.boxes import boxes
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import bytes_on_the_wire
@@ -19,10 +19,11 @@ from simmpp.workload.intersect import Intersector
 from simmpp.workload.normalise import Frame, frame_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.rays import Rays, children, first_generation, joined, spawning
-from simmpp.workload.workload import Workload, frozen
+from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
 """Rays of one batch: bounds the memory of what is only passing through."""
+Integer = TypeVar("Integer", np.int32, np.int64)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
 
@@ -90,10 +91,11 @@ def _intersected(
     geometry: Geometry, proposer: Intersector, rays: Rays
 ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
     """Hits, normalised distances, lengths of the itineraries, and the itineraries of a batch."""
-    claims = proposer.claims(rays.origins, rays.directions)
+    claims = np.full((len(rays.kinds), 2), -1, dtype=np.int32)
+    asks = rays.kinds != SHADOW
+    claims[asks] = proposer.claims(rays.origins[asks], rays.directions[asks])
     hits, distances, n_tests, objects = find_itineraries(
         geometry.shapes,
-        geometry.boxes,
         rays.origins,
         rays.directions,
         rays.kinds,
@@ -137,7 +139,7 @@ def _workload(
     )
 
 
-def _offsets(counts: NDArray[np.int32], first: int, dtype: type[np.signedinteger]) -> NDArray:
+def _offsets(counts: NDArray[np.int32], first: int, dtype: type[Integer]) -> NDArray[Integer]:
     """(n + 1,) where each run of ``counts`` begins, and where the last one ends."""
     offsets = np.empty(len(counts) + 1, dtype=dtype)
     offsets[0] = first
@@ -146,8 +148,8 @@ def _offsets(counts: NDArray[np.int32], first: int, dtype: type[np.signedinteger
     return offsets
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def pixels_of(parents):
+@njit
+def pixels_of(parents: NDArray[np.int32]) -> NDArray[np.int32]:
     """The primary ray at the root of each ray's tree, (n,) int32."""
     pixels = np.empty(len(parents), np.int32)
     for i in range(len(parents)):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,11 +38,11 @@ class Workload:
     parents: NDArray[np.int32]
     """(n,) int32: the ray that spawned this one; -1 for a primary ray."""
     child_offsets: NDArray[np.int32]
-    """(n + 1,) int32: the children of ray i are rays child_offsets[i] ... child_offsets[i + 1] - 1."""
+    """(n + 1,) int32: children of ray i are rays child_offsets[i] ... child_offsets[i + 1] - 1."""
     pixels: NDArray[np.int32]
     """(n,) int32: the primary ray at the root of this ray's tree."""
     hits: NDArray[np.int32]
-    """(n,) int32: the object hit (a shadow ray: the first blocker of its itinerary); -1 for none."""
+    """(n,) int32: the object hit (shadow ray: the first blocker of its itinerary); -1 for none."""
     hit_distances: NDArray[np.float64]
     """(n,) float64: distance of that hit in scene units; inf for none."""
     itinerary_offsets: NDArray[np.int64]
@@ -81,7 +82,7 @@ class Workload:
 
 def frozen(workload: Workload) -> Workload:
     """The same workload, its arrays read-only and C-contiguous from now on."""
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for field in dataclasses.fields(workload):
         value = getattr(workload, field.name)
         if isinstance(value, np.ndarray):
