@@ -116,17 +116,20 @@ def _write_picture(scene: Scene, point: Point, path: Path) -> None:
 
 def _verify(scene: Scene, point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
+    import numpy as np
+
     from simmpp.workload.verify import verify
 
     failed = False
+    nothing = np.zeros(0, np.int32)
     for run in runs:
-        result = run.result
+        rays, objects = run.result.tested_rays, run.result.tested_objects
         problem = verify(
             scene,
             point.config.picture,
             point.workload,
-            result.tested_rays,
-            result.tested_objects,
+            nothing if rays is None else rays,
+            nothing if objects is None else objects,
         )
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         click.echo(f"verify {run.parameters.title}: {verdict}")

@@ -1,6 +1,7 @@
 """The commands as a user meets them: output, files, exit codes, one line for every mistake."""
 
 import csv
+import dataclasses
 import json
 import subprocess
 import sys
@@ -75,6 +76,37 @@ def test_run_writes_rows_and_record() -> None:
         accounts = zip(*policy["pes"].values(), strict=True)
         assert {sum(account) for account in accounts} == {policy["makespan_ps"]}
     assert [policy["named"] for policy in record["policies"]] == [False, True, True, False]
+
+
+def test_verify_and_picture() -> None:
+    done = simmpp("run", "c.yaml", "--verify", "--picture", "p.png")
+    assert done.exit_code == 0, done.output
+    verdicts = [line for line in done.stdout.splitlines() if line.startswith("verify ")]
+    assert len(verdicts) == 4
+    assert all(line.endswith(": the picture of its tests is the same") for line in verdicts)
+    assert Path("p.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_picture_that_differs_fails_and_names_the_pixel(monkeypatch: pytest.MonkeyPatch) -> None:
+    from simmpp.engine.simulate import simulate
+
+    def forgetful(*arguments: object, **options: object) -> object:
+        result = simulate(*arguments, **options)  # type: ignore[arg-type]
+        tests = result.tested_rays, result.tested_objects
+        return dataclasses.replace(result, tested_rays=tests[0][:-9], tested_objects=tests[1][:-9])
+
+    monkeypatch.setattr("simmpp.sweep.point.simulate", forgetful)
+    done = simmpp("run", "c.yaml", "--verify")
+    assert done.exit_code == 1
+    assert "verify ray: differs: pixel (" in done.stdout
+
+
+def test_a_scene_that_no_ray_hits_is_a_picture_too() -> None:
+    view = "v\nfrom 0 0 0\nat 1 0 0\nup 0 0 1\nangle 45\nhither 1\nresolution 8 8\nl 1 1 1\n"
+    Path("behind.nff").write_text(view + "f 1 1 1 1 0 0 0 0\ns -9 0 0 1\n")
+    done = simmpp("run", "c.yaml", "--set", "scene=behind.nff", "--verify", "--picture", "p.png")
+    assert done.exit_code == 0, done.output
+    assert "144 rays in all, 0 tests" in done.stdout
 
 
 def test_two_runs_write_the_same_rows() -> None:
