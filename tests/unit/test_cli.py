@@ -3,6 +3,7 @@
 import csv
 import dataclasses
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,8 +12,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 from simmpp.cli import main
+from simmpp.compiled import cache_folder
 from simmpp.errors import ModelError
 from simmpp.sweep.rows import COLUMNS
+
+COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
+"""Compiled code is shared with the other tests; workloads are not."""
 
 CONFIG = """
 scene: tetra:2
@@ -27,6 +32,7 @@ policy: [ray, concurrent]
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SIMMPP_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", COMPILED)
     Path("c.yaml").write_text(CONFIG)
 
 
