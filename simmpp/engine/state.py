@@ -156,7 +156,7 @@ def _arrays(
             "itinerary_objects": workload.itinerary_objects,
             "child_offsets": workload.child_offsets,
             "object_bytes": workload.object_bytes,
-            "test_ps": machine.test.per_object_ps(workload.object_kinds, workload.object_triangles),
+            "test_ps": machine.test.of_objects(workload),
             "owners": placement.owners,
             "copy_costs": np.array(
                 [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.units import UNLIMITED as UNLIMITED
-from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
+from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,12 @@ class TestCost:
         beyond_first = np.maximum(triangles.astype(np.int64) - 1, 0)
         costs: NDArray[np.int64] = by_kind[kinds] + self.per_triangle_ps * beyond_first
         return costs
+
+    def of_objects(self, workload: Workload) -> NDArray[np.int64]:
+        """Cost of a test against each object, its own where the workload gives one: (N,) int64."""
+        if len(workload.object_test_ps):
+            return workload.object_test_ps
+        return self.per_object_ps(workload.object_kinds, workload.object_triangles)
 
 
 @dataclass(frozen=True)

@@ -61,10 +61,10 @@ class PolicyRun:
 
 def total_compute_ps(workload: Workload, machine: Machine) -> int:
     """What one PE alone, with everything in memory, would take."""
-    first_ps = replace(machine.test, per_triangle_ps=0).per_object_ps(
-        workload.object_kinds, workload.object_triangles
-    )
+    first_ps = replace(machine.test, per_triangle_ps=0).of_objects(workload)
     beyond_first = np.maximum(workload.object_triangles - 1, 0)
+    if len(workload.object_test_ps):
+        beyond_first = np.zeros_like(beyond_first)
     tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
     # Python's integers: the sum may be beyond the clock, which is what it is checked for
     total_ps = workload.n_rays * machine.ray_ps

@@ -21,6 +21,7 @@ DTYPES = {
     "object_triangles": np.int32,
     "object_bytes": np.int64,
     "object_centroids": np.float64,
+    "object_test_ps": np.int64,
 }
 
 
@@ -42,6 +43,8 @@ def _problem_of_shapes(workload: Workload) -> str:
         if array.ndim != (2 if name == "object_centroids" else 1):
             return f"{name} has {array.ndim} dimensions"
         expected = lengths.get(name, n_objects if name.startswith("object_") else n)
+        if name == "object_test_ps" and len(array) == 0:
+            continue
         if name != "itinerary_objects" and len(array) != expected:
             return f"{name} has {len(array)} entries, expected {expected}"
     if workload.object_centroids.shape[1] != 3:
@@ -89,6 +92,8 @@ def _problem_of_itineraries(workload: Workload) -> str:
         return "object_kinds has an unknown kind"
     if (workload.object_bytes < 0).any() or (workload.object_triangles < 0).any():
         return "an object has a negative size"
+    if (workload.object_test_ps < 0).any():
+        return "an object has a negative cost"
     if not np.isfinite(workload.object_centroids).all():
         return "object_centroids are not finite"
     return ""

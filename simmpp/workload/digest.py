@@ -12,7 +12,7 @@ from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.picture import Picture
 
-WORKLOAD_VERSION = 1
+WORKLOAD_VERSION = 2
 """Grows with every change of the algorithm that can change a workload."""
 
 

@@ -8,7 +8,7 @@ so the children of a ray are neighbours, in the order reflected, refracted, shad
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -58,6 +58,9 @@ class Workload:
     """(N,) int64: size on the wire, without a message's header."""
     object_centroids: NDArray[np.float64]
     """(N, 3) float64: centre of the object's box, in scene units; owners are placed by it."""
+    object_test_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(N,) int64 picoseconds: what one test of the object costs, whatever its kind; (0,) where the
+    machine decides by kind and triangles."""
 
     @property
     def n_rays(self) -> int:
@@ -83,9 +86,9 @@ class Workload:
 def frozen(workload: Workload) -> Workload:
     """The same workload, its arrays read-only and C-contiguous from now on."""
     arrays: dict[str, Any] = {}
-    for field in dataclasses.fields(workload):
-        value = getattr(workload, field.name)
+    for each in dataclasses.fields(workload):
+        value = getattr(workload, each.name)
         if isinstance(value, np.ndarray):
-            arrays[field.name] = np.ascontiguousarray(value)
-            arrays[field.name].flags.writeable = False
+            arrays[each.name] = np.ascontiguousarray(value)
+            arrays[each.name].flags.writeable = False
     return dataclasses.replace(workload, **arrays)
