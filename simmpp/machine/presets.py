@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import as_file, files
 from math import prod
 
@@ -41,6 +42,7 @@ def preset_names() -> list[str]:
     return sorted(name.removesuffix(".yaml") for name in found if name.endswith(".yaml"))
 
 
+@cache
 def load_preset(name: str) -> Preset:
     """Read one of the package's machines.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,11 +14,21 @@ from simmpp.machine.presets import machine, torus_shape
 from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
 from simmpp.policy.parameters import LoadInfo, PolicyParameters
 from simmpp.strict import Place, misplaced, structure
+from simmpp.sweep.axes import Axis, axes_of
 from simmpp.sweep.overrides import Places, override, set_key
 from simmpp.sweep.settings import PolicySettings, Settings
 from simmpp.units import shown
 from simmpp.workload.picture import Picture, Samples
 from simmpp.yamlfile import KeyPath, read_yaml
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a configuration was made from, so that others can be made with some keys changed."""
+
+    data: dict[str, Any]
+    places: Places
+    folder: Path
 
 
 @dataclass(frozen=True)
@@ -28,6 +38,8 @@ class Config:
     settings: Settings
     folder: Path
     """Where relative scene files are looked for."""
+    source: Source | None = field(default=None, repr=False, compare=False)
+    """Kept where points of a sweep are still to be made of it."""
 
     @property
     def processors(self) -> int:
@@ -130,31 +142,50 @@ def config_from_mapping(mapping: Mapping[str, object]) -> Config:
 def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
     """The configuration, once it and all values that are swept are found right."""
     settings = structure(Settings, data, places)
-    config = Config(settings, _scene_folder(places, folder))
-    for point, point_places in _points(data, settings, places):
-        swept = structure(Settings, point, point_places)
-        try:
-            torus_shape(swept.processors, swept.machine.shape)
-        except ConfigError as error:
-            raise misplaced(("machine", "shape"), error.problem, point_places) from None
+    config = Config(settings, _scene_folder(places, folder), Source(data, places, folder))
+    axes = axes_of(settings.sweep)
+    first = dict.fromkeys(axes, 0)
+    point_at(config, axes, first)
+    for name, axis in axes.items():
+        for n in range(1, len(axis)):
+            point_at(config, axes, {**first, name: n})
     return config
 
 
-def _points(
-    data: dict[str, Any], settings: Settings, places: Places
-) -> Iterator[tuple[dict[str, Any], Places]]:
-    """The sweep's first point and those one value away from it: each value occurs in one."""
-    axes = settings.sweep
-    base = {path: place for path, place in places.items() if path[:1] != ("sweep",)}
-    first = {key: 0 for key in axes}
-    chosen = [first] + [{**first, key: n} for key in axes for n in range(1, len(axes[key]))]
-    for indices in chosen:
-        point, point_places = copy.deepcopy(data), dict(base)
-        point.pop("sweep", None)
-        for key, n in indices.items():
-            place = _nearest(places, ("sweep", key, n))
-            set_key(point, key, axes[key][n], point_places, place)
-        yield point, point_places
+def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]) -> Config:
+    """The configuration of one combination: ``chosen`` is the number of the choice of each axis.
+
+    Raises ConfigError where the values do not go together.
+    """
+    assignments = [
+        (key, value, ("sweep", name, n))
+        for name, n in chosen.items()
+        for key, value in axes[name][n].assignments.items()
+    ]
+    point = changed(config, sorted(assignments, key=lambda each: each[0].count(".")))
+    settings, source = point.settings, point.source
+    try:
+        torus_shape(settings.processors, settings.machine.shape)
+    except ConfigError as error:
+        places = source.places if source else {}
+        raise misplaced(("machine", "shape"), error.problem, places) from None
+    return point
+
+
+def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) -> Config:
+    """The configuration without its sweep, and with dotted keys set one after the other.
+
+    Each comes with the path of what set it in the configuration's file.
+    """
+    if config.source is None:
+        raise ValueError("expected a configuration that keeps its source")
+    given, places, folder = config.source.data, config.source.places, config.source.folder
+    data = copy.deepcopy({key: value for key, value in given.items() if key != "sweep"})
+    own = {path: place for path, place in places.items() if path[:1] != ("sweep",)}
+    for key, value, path in assignments:
+        set_key(data, key, copy.deepcopy(value), own, _nearest(places, path))
+    settings = structure(Settings, data, own)
+    return Config(settings, _scene_folder(own, folder), Source(data, own, folder))
 
 
 def _nearest(places: Places, path: KeyPath) -> Place:

@@ -8,14 +8,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 from simmpp.errors import ConfigError
+from simmpp.sweep.axes import axes_of
 from simmpp.units import picoseconds, share, shown
 
 MOST_RAYS = 2**31 - 1
 """Rays are numbered by int32."""
-UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds")
-"""Keys that say how a sweep is made, and so can't be swept."""
-MOST_VALUES = 1000
-"""Values of one swept key."""
 AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
 OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
 MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
@@ -82,15 +79,8 @@ def tolerance(value: object) -> Fraction | None:
 
 
 def axes(value: object) -> object:
-    """Lists of values by dotted key; the keys themselves are checked later."""
+    """Axes of a sweep; the keys themselves are checked later."""
     if not isinstance(value, dict):
         raise ConfigError(f"value {shown(value)}: expected {AXES}")
-    for key, values in value.items():
-        if key in UNSWEPT:
-            raise ConfigError(f"{key!r} can't be swept")
-        name = key if isinstance(key, str) and key.isprintable() else repr(key)
-        if not isinstance(values, list | tuple) or not 0 < len(values) <= MOST_VALUES:
-            raise ConfigError(
-                f"{name}: value {shown(values)}: expected a list of 1 to {MOST_VALUES} values"
-            )
+    axes_of(value)
     return value
