@@ -25,6 +25,10 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except InputError as error:
             _quit(f"error: {error}", INPUT_ERROR)
+        except BrokenPipeError:
+            raise  # click knows what to do when the reader of a pipe has gone
+        except OSError as error:
+            _quit(f"error: {error.filename or 'output'}: {error.strerror or error}", INPUT_ERROR)
         except ModelError as error:
             _quit(f"this is a bug, please report it: {error}", MODEL_ERROR)
         except KeyboardInterrupt:

@@ -188,6 +188,7 @@ def test_mistakes() -> None:
     ("raised", "code", "line"),
     [
         (ModelError("3 rays left"), 70, "simmpp: this is a bug, please report it: 3 rays left"),
+        (OSError(28, "No space left", "o"), 2, "simmpp: error: o: No space left"),
         (KeyboardInterrupt(), 130, "simmpp: interrupted"),
         (MemoryError(), 2, "simmpp: error: out of memory: expected a smaller scene or resolution"),
     ],
