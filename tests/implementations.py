@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from builders import Case
-from oracles.machine import Outcome
+from oracles.ledger import Outcome
 from oracles.machine import simulate as simulate_slowly
 from oracles.rules import Rules
 

@@ -9,6 +9,7 @@ import pytest
 from builders import Case, cases, everywhere, with_policy
 from hypothesis import given, settings
 from implementations import outcome_of, result_of
+from numpy.typing import NDArray
 
 from simmpp.engine.log import EVENT_KINDS
 from simmpp.engine.result import Result
@@ -20,12 +21,13 @@ pytestmark = pytest.mark.parametrize("engine", ENGINES)
 many = settings(max_examples=30, deadline=None, derandomize=True)
 
 
-def rows(result: Result, event: str, kind: int | None = None) -> np.ndarray:
+def rows(result: Result, event: str, kind: int | None = None) -> NDArray[np.void]:
     """Rows of the event log of one event, and of one kind of message."""
     log = result.log
     assert log is not None
     chosen = log["event"] == EVENT_KINDS.index(event)
-    return log[chosen if kind is None else chosen & (log["kind"] == kind)]
+    found: NDArray[np.void] = log[chosen if kind is None else chosen & (log["kind"] == kind)]
+    return found
 
 
 def policies_of(case: Case) -> list[Case]:

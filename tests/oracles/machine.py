@@ -7,7 +7,9 @@ and PEs instead of keeping counts. Nothing of it is shared with the package but 
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
@@ -28,7 +30,11 @@ class Simulation(Dispatch):
         """Handle instants in order until no ray is left."""
         for pe in self.pes:
             self.schedule(0, pe, "begin")
-        handlers = {"arrive": self.arrive, "begin": self.begin, "dispatch": self.dispatch}
+        handlers: dict[str, Callable[[int, Any], None]] = {
+            "arrive": self.arrive,
+            "begin": self.begin,
+            "dispatch": self.dispatch,
+        }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
             if self.rays_left == 0 and time >= self.ledger.makespan_ps:

@@ -24,7 +24,7 @@ from typing import Any
 import pytest
 from builders import Case, placement_of, workload_of
 from implementations import IMPLEMENTATIONS, run
-from oracles.machine import Outcome
+from oracles.ledger import Outcome
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.policy.parameters import PolicyParameters
