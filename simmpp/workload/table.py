@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from simmpp.errors import WorkloadError
 
 Column = NDArray[Any]
+MOST_ROWS = 2**31 - 2
+"""Rays, and objects, are numbered by int32; offsets have one more entry."""
 LONGEST_WORD = 20
 """Characters kept of a word: enough to tell it in an error."""
 
@@ -66,16 +68,16 @@ class Table:
         self.require(within, name, expected or f"an integer from {least} to {most}")
         return column.astype(np.int64)
 
-    def numbers(self, name: str, default: float = 0.0) -> NDArray[np.float64]:
-        """(rows,) float64, all finite."""
+    def numbers(self, name: str, where: NDArray[np.bool_] | bool = True) -> NDArray[np.float64]:
+        """(rows,) float64, finite ``where`` that is asked; 0 where there is no column."""
         if name not in self.columns:
-            return np.full(self.rows, default)
+            return np.zeros(self.rows)
         column = self.columns[name]
         if column.dtype.kind not in "iuf":
             self.fail(name, f"it holds {_what(column)}, expected numbers")
         with np.errstate(over="ignore"):
             column = column.astype(np.float64)
-        self.require(np.isfinite(column), name, "a finite number")
+        self.require(np.isfinite(column) | ~np.asarray(where), name, "a finite number")
         return column
 
     def choices(self, name: str, words: Sequence[str], default: Column) -> NDArray[np.uint8]:
@@ -104,3 +106,13 @@ def _shown(value: Any) -> str:
 
 def _what(column: Column) -> str:
     return "text" if column.dtype.kind == "U" else str(column.dtype)
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """What a file holds; itineraries are two columns of rays: offsets (rows + 1) and objects."""
+
+    rays: Table
+    objects: Table
+    picture: Column | None
+    """Rows and columns of primary rays, if the file says."""
