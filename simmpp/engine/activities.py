@@ -123,12 +123,11 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
 @njit
 def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
-    refreshes = s.refresh_ps != NONE and kind in (OBJECT, RAYS)
-    if s.listens or refreshes:
+    if s.listens:
         row = partner_of(s, me, source)
         partner_rows(s)[row].load = load
         partner_rows(s)[row].heard_ps = now_ps
-        if refreshes:
+        if s.refresh_ps != NONE and kind in (OBJECT, RAYS):
             note_exchange(s, me, row)
 
 

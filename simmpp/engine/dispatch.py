@@ -11,7 +11,7 @@ transfer makes at least one test, and stale loads can herd rays but not bounce t
 from __future__ import annotations
 
 from simmpp.compiled import njit
-from simmpp.engine.layout import EXACT, NO_INFO, NONE, PIGGYBACK, Row, Run
+from simmpp.engine.layout import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.memory import (
     exchanged,
     owners,
@@ -166,8 +166,6 @@ def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
     Not after the receipt of such a message, or loads would answer loads for ever.
     """
     clock_ps = now_ps
-    if s.load_info != PIGGYBACK:
-        return clock_ps
     for i in range(_collect_partners(s, me, exchanged(s), me, 0)):
         partner = partner_rows(s)[sort_items(s)[i]]
         if clock_ps - partner.sent_ps >= s.refresh_ps:

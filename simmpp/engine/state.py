@@ -228,7 +228,8 @@ def _parameters(
 ) -> dict[str, int]:
     policy = POLICIES[parameters.name]
     nb, n0, min_load = machine.processors, workload.n_primaries, parameters.min_load
-    load_info = LOAD_INFO[parameters.load_info]
+    load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
+    listens = policy.knows_loads and load_info == PIGGYBACK
     limits = [b for b in (machine.link_bytes_per_s, machine.injection_bytes_per_s) if b]
     x, y, z = machine.shape
     return {name: getattr(machine, name) for name in PARAMETERS if hasattr(machine, name)} | {
@@ -250,8 +251,8 @@ def _parameters(
         "batch": parameters.batch,
         "ask_at_least": policy.ask_at_least or parameters.ask_at_least,
         "load_info": load_info,
-        "listens": policy.knows_loads and load_info == PIGGYBACK,
-        "refresh_ps": NONE if parameters.refresh_ps is None else parameters.refresh_ps,
+        "listens": listens,
+        "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,
         "merge_requests": parameters.merge_requests,
     }
 

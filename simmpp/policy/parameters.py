@@ -26,7 +26,8 @@ class PolicyParameters:
     load_info: LoadInfo = "piggyback"
     """How a PE knows the load of another: from headers (the paper), exactly, or not at all."""
     refresh_ps: int | None = None
-    """With piggyback: send the own load to partners that were sent nothing for that long."""
+    """With piggyback: send the own load to partners that were sent nothing for that long. Policies
+    whose send rule reads no load ignore it, as they ignore load_info."""
     merge_requests: bool = True
     """One request per missing object in flight; False sends one request per waiting ray."""
 

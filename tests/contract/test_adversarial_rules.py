@@ -82,7 +82,7 @@ def plain(send: SendRule, ask: AskRule) -> Rules:
     def may_ask(view: View) -> bool:
         return ask(view.load, view.waiting, int(view.nothing_else))
 
-    return Rules(may_send, may_ask)
+    return Rules(may_send, may_ask, knows_loads=True)
 
 
 def adversarial_case(seed: int) -> Case:

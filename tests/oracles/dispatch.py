@@ -81,7 +81,7 @@ class Dispatch(World):
 
     def refresh(self, clock: int, pe: PE) -> int:
         """The own load to every partner that was sent nothing for long."""
-        if self.policy.refresh_ps is None:
+        if self.policy.refresh_ps is None or not self.rules.knows_loads:
             return clock
         for other in self.others(pe):
             silence = clock - pe.last_departure[other]

@@ -36,6 +36,8 @@ class Rules:
     may_ask: Rule | None = None
     ask_at_least: int | None = None
     """Fixed number of rays that is enough to ask; None: the parameter."""
+    knows_loads: bool = False
+    """The send rule reads the load of PE j; only then are loads refreshed."""
 
 
 def always(view: View) -> bool:
@@ -51,7 +53,7 @@ def to_the_less_loaded(view: View) -> bool:
 RULES = {
     "object": Rules(may_ask=always, ask_at_least=1),
     "ray": Rules(may_send=always),
-    "concurrent": Rules(may_send=to_the_less_loaded, may_ask=always),
+    "concurrent": Rules(may_send=to_the_less_loaded, may_ask=always, knows_loads=True),
     "replicated": Rules(),
 }
 
