@@ -11,7 +11,6 @@ import click
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
-    from simmpp.scene.scene import Scene
     from simmpp.sweep.config import Config
     from simmpp.sweep.point import Point, PolicyRun
 
@@ -62,15 +61,15 @@ def run_command(
 def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool) -> None:
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     from simmpp.commands.terminal import output
-    from simmpp.commands.tracing import traced
+    from simmpp.commands.tracing import workload
     from simmpp.report.summary import summary
-    from simmpp.scene.load import load_scene
     from simmpp.sweep.point import make_point
 
-    scene = load_scene(config.scene_spec)
-    point = make_point(config, traced(scene, config.picture))
+    if picture or verify:
+        _require_scene(config, "--picture" if picture else "--verify")
+    point = make_point(config, workload(config))
     if picture:
-        _write_picture(scene, point, picture)
+        _write_picture(point, picture)
     runs: list[PolicyRun] = []
     try:
         _simulate(point, runs, record_tests=verify)
@@ -79,7 +78,15 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
             _write(point, runs, out)
     output().print(summary(point, runs))
     if verify:
-        _verify(scene, point, runs)
+        _verify(point, runs)
+
+
+def _require_scene(config: Config, option: str) -> None:
+    from simmpp.errors import ConfigError
+
+    if config.settings.scene.workload is not None:
+        problem = "expected a scene to trace; a workload file has rays, but no geometry"
+        raise ConfigError(problem, where=option)
 
 
 def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> None:
@@ -107,20 +114,23 @@ def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
     write_rows([row(point, run) for run in runs], out / "results.csv")
 
 
-def _write_picture(scene: Scene, point: Point, path: Path) -> None:
+def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
+    from simmpp.scene.load import load_scene
     from simmpp.workload.shading import render, save_png
 
+    scene = load_scene(point.config.scene_spec)
     save_png(render(scene, point.config.picture, point.workload), path)
 
 
-def _verify(scene: Scene, point: Point, runs: list[PolicyRun]) -> None:
+def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
     import numpy as np
 
+    from simmpp.scene.load import load_scene
     from simmpp.workload.verify import verify
 
-    failed = False
+    scene, failed = load_scene(point.config.scene_spec), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
         rays, objects = run.result.tested_rays, run.result.tested_objects

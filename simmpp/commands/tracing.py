@@ -1,21 +1,34 @@
-"""Tracing with a bar: what ``run`` and ``scene --preview`` begin with."""
+"""Tracing with a bar: what commands that need a workload begin with."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from simmpp.commands.terminal import notice, progress_bars
 from simmpp.scene.scene import Scene
+from simmpp.sweep.config import Config
+from simmpp.sweep.workloads import workload_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
+from simmpp.workload.tracer import Progress
 from simmpp.workload.workload import Workload
+
+
+def workload(config: Config) -> Workload:
+    """The workload that a configuration names; whatever must be traced is traced with a bar."""
+    with _bar() as progress:
+        return workload_of(config, progress=progress, notice=notice)
 
 
 def traced(scene: Scene, picture: Picture) -> Workload:
     """The picture's workload, from the cache or traced with a bar."""
+    with _bar() as progress:
+        return workload_for(scene, picture, progress=progress, notice=notice)
+
+
+@contextmanager
+def _bar() -> Iterator[Progress]:
     with progress_bars() as bars:
         bar = bars.add_task("tracing rays", total=None)
-        return workload_for(
-            scene,
-            picture,
-            progress=lambda done, total: bars.update(bar, completed=done, total=total),
-            notice=notice,
-        )
+        yield lambda done, total: bars.update(bar, completed=done, total=total)

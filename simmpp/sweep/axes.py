@@ -12,7 +12,7 @@ from simmpp.units import shown
 POINTS = "points"
 """The axis of named points; also the name of their column, less the plural."""
 NAME = "name"
-UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "engine")
+UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "engine", "check")
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""

@@ -16,6 +16,7 @@ from simmpp.policy.parameters import LoadInfo, PolicyParameters
 from simmpp.strict import Place, misplaced, structure
 from simmpp.sweep.axes import Axis, axes_of
 from simmpp.sweep.overrides import Places, override, set_key
+from simmpp.sweep.scene_settings import FILES
 from simmpp.sweep.settings import PolicySettings, Settings
 from simmpp.units import shown
 from simmpp.workload.picture import Picture, Samples
@@ -48,9 +49,9 @@ class Config:
 
     @property
     def scene_spec(self) -> dict[str, object]:
-        """What ``load_scene`` takes, with file names that hold from anywhere."""
+        """What ``load_scene`` takes (or ``workload``), with file names that hold from anywhere."""
         spec = self.settings.scene.model_dump(exclude_none=True)
-        for key in ("nff", "mesh"):
+        for key in FILES:
             if key in spec:
                 spec[key] = str(self.folder / spec[key])
         return spec
@@ -195,7 +196,7 @@ def _nearest(places: Places, path: KeyPath) -> Place:
 
 def _scene_folder(places: Places, folder: Path) -> Path:
     """Files named in a configuration lie beside it; those named by --set, here."""
-    settings = [_nearest(places, ("scene", key))[0] for key in ("nff", "mesh")]
+    settings = [_nearest(places, ("scene", key))[0] for key in FILES]
     return Path() if any(where.startswith("--set ") for where in settings) else folder
 
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from simmpp.engine.simulate import ENGINES, READY_ORDERS
-from simmpp.errors import ConfigError
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.presets import preset_names
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
-from simmpp.scene.spd.generators import find_generator, known_names
 from simmpp.strict import (
     Expect,
     Share,
@@ -28,58 +25,14 @@ from simmpp.strict import (
     parsed_by,
 )
 from simmpp.sweep import values
+from simmpp.sweep.scene_settings import SceneSettings, long_scene
 
 Processors = Annotated[int, *integer(1, MOST_PROCESSORS)]
 RayCount = Annotated[int, *integer(1, values.MOST_RAYS)]
 
-Objects = Annotated[str | dict[str, int], parsed_by(values.objects), Expect(values.OBJECTS)]
 MinLoad = Annotated[Fraction | int, parsed_by(values.min_load), Expect(values.MIN_LOAD)]
 Information = Annotated[str | dict[str, int], parsed_by(values.load_info), Expect(values.LOAD_INFO)]
 Tolerance = Annotated[Fraction | None, parsed_by(values.tolerance), Expect(values.TOLERANCE)]
-
-
-class SceneSettings(Strict):
-    """What is rendered: one of spd, nff, mesh. Text such as ``mountain:5`` is short for it."""
-
-    spd: Annotated[str, *one_of(*known_names())] | None = Field(
-        default=None, description="a scene of the Standard Procedural Databases (Haines 1987)"
-    )
-    size: Annotated[int, *integer(1, 10**9)] | None = Field(
-        default=None, description="size of that scene; the SPD's own when not given"
-    )
-    nff: Text | None = Field(
-        default=None, description="an NFF file, relative to the configuration's folder"
-    )
-    mesh: Text | None = Field(
-        default=None, description="a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"
-    )
-    objects: Objects | None = Field(
-        default=None, description="how a mesh is cut into objects; components when not given"
-    )
-
-    @field_validator("size")
-    @classmethod
-    def _size_exists(cls, size: int | None, others: ValidationInfo) -> int | None:
-        name = others.data.get("spd")
-        if size is not None and name is not None:
-            try:
-                find_generator(name).check(size)
-            except ConfigError as error:
-                raise mistake(f"value {size}: {error.problem}") from None
-        return size
-
-    @model_validator(mode="after")
-    def _one_source(self) -> SceneSettings:
-        given = [key for key in ("spd", "nff", "mesh") if getattr(self, key) is not None]
-        if len(given) != 1:
-            problem = f"expected one of spd, nff, mesh, got {' and '.join(given) or 'none'}"
-        elif self.size is not None and given != ["spd"]:
-            problem = "size goes with spd only"
-        elif self.objects is not None and given != ["mesh"]:
-            problem = "objects goes with mesh only"
-        else:
-            return self
-        raise mistake(problem)
 
 
 class PictureSettings(Strict):
@@ -183,21 +136,17 @@ def long_policies(value: object) -> object:
     return [{"name": entry} if isinstance(entry, str) else entry for entry in entries]
 
 
-def long_scene(value: object) -> object:
-    """``mountain:5`` or a file's name as the mapping it is short for."""
-    if not isinstance(value, str):
-        return value
-    name, colon, detail = value.rpartition(":")
-    number = int(detail) if re.fullmatch("[0-9]{1,9}", detail) else None
-    if value in known_names():
-        return {"spd": value}
-    if name in known_names():
-        return {"spd": name, "size": detail if number is None else number}
-    if number is not None:
-        return {"mesh": name, "objects": {"clusters": number}}
-    if detail in ("nodes", "components") and colon:
-        return {"mesh": name, "objects": detail}
-    return {"nff" if value.lower().endswith(".nff") else "mesh": value}
+class CheckSettings(Strict):
+    """What `simmpp check` allows; without any of these, every integer must be the baseline's."""
+
+    time_profit: Tolerance = Field(
+        default=None, description="relative change of the time profit that `check` allows"
+    )
+    message_profit: Tolerance = Field(
+        default=None, description="likewise of the message profit; what isn't named isn't compared"
+    )
+    speedup: Tolerance = Field(default=None, description="likewise of the speedup")
+    efficiency: Tolerance = Field(default=None, description="likewise of the efficiency")
 
 
 class Settings(Strict):
@@ -235,6 +184,16 @@ class Settings(Strict):
     sweep: Annotated[dict[str, list[object]], parsed_by(values.axes), Expect(values.AXES)] = Field(
         default={}, description="values of dotted keys, such as memory.fraction: [0.1, 0.5, 1]"
     )
+
+    check: CheckSettings = Field(
+        default=CheckSettings(), description="tolerances of `simmpp check` against its baseline"
+    )
+
+    @model_validator(mode="after")
+    def _picture_is_traced(self) -> Settings:
+        if self.scene.workload is not None and "picture" in self.model_fields_set:
+            raise mistake("picture goes with a scene that is traced, not with scene.workload")
+        return self
 
     @field_validator("policy")
     @classmethod
