@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit, njit_reading
+from simmpp.errors import SceneError
 from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.camera import primary_rays
 from simmpp.workload.candidates import work_for
@@ -34,6 +35,8 @@ from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+FAR = 1e100
+"""Distance in scene sizes beyond which squares might overflow."""
 New = tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints]
 
 
@@ -74,8 +77,11 @@ def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
     lights = np.array(
         [light.position for light in scene.lights if picture.shadows], dtype=np.float64
     )
+    placed = frame.points(lights.reshape(-1, 3))
+    if not (np.abs(placed) < FAR).all():
+        raise SceneError("a light is not finite, or too far away", where=scene.name)
     return Spawning(
-        lights=frame.points(lights.reshape(-1, 3)),
+        lights=placed,
         reflection=picture.reflection and bool(geometry.reflects.any()),
         refraction=picture.refraction and bool(geometry.transmits.any()),
         max_depth=picture.max_depth,

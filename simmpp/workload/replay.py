@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
-
 from simmpp.errors import WorkloadError
 from simmpp.scene.scene import Scene
 from simmpp.workload.digest import digest_of
@@ -15,6 +13,14 @@ from simmpp.workload.normalise import Frame, frame_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.rays import Rays, children, first_generation, spawning
 from simmpp.workload.workload import Workload
+
+
+class SpawnError(WorkloadError):
+    """Recorded hits do not spawn the recorded rays."""
+
+    def __init__(self, ray: int, name: str) -> None:
+        super().__init__(f"the recorded hit of ray {ray} spawns other rays", where=name)
+        self.ray = ray
 
 
 class Traced(NamedTuple):
@@ -46,7 +52,7 @@ def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
 
     Raises
     ------
-    WorkloadError
+    SpawnError
         The recorded hits do not spawn the recorded rays.
     """
     scene, picture, workload, frame, geometry = traced
@@ -54,9 +60,7 @@ def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
     rays, start, depth = first_generation(scene, picture, frame), 0, 1
     while len(rays.kinds):
         stop = start + len(rays.kinds)
-        same_kinds = np.array_equal(rays.kinds, workload.kinds[start:stop])
-        if not (same_kinds and np.array_equal(rays.parents, workload.parents[start:stop])):
-            raise WorkloadError(f"its hits spawn other rays at depth {depth}", where=workload.name)
+        _compare(rays, start, workload)
         yield start, rays
         distances = workload.hit_distances[start:stop] * frame.scale
         rays, _ = children(
@@ -64,5 +68,17 @@ def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
         )
         start, depth = stop, depth + 1
     if start != workload.n_rays:
-        problem = f"it records {workload.n_rays} rays, its hits spawn {start}"
-        raise WorkloadError(problem, where=workload.name)
+        raise SpawnError(int(workload.parents[start]), workload.name)
+
+
+def _compare(rays: Rays, start: int, workload: Workload) -> None:
+    """Raise SpawnError for the first ray whose children are not the recorded ones."""
+    recorded = slice(start, start + len(rays.kinds))
+    kinds, parents = workload.kinds[recorded], workload.parents[recorded]
+    known = len(kinds)
+    same = (kinds == rays.kinds[:known]) & (parents == rays.parents[:known])
+    if not same.all():
+        first = int(same.argmin())
+        raise SpawnError(max(0, min(int(parents[first]), int(rays.parents[first]))), workload.name)
+    if known < len(rays.kinds):
+        raise SpawnError(max(0, int(rays.parents[known])), workload.name)

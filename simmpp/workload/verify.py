@@ -18,7 +18,7 @@ from simmpp.workload.exact import entry, hit_object, ray_of
 from simmpp.workload.geometry import Geometry
 from simmpp.workload.picture import Picture
 from simmpp.workload.rays import Rays
-from simmpp.workload.replay import Traced, generations, traced
+from simmpp.workload.replay import SpawnError, Traced, generations, traced
 from simmpp.workload.shading import shade
 from simmpp.workload.workload import SHADOW, Workload
 
@@ -32,14 +32,15 @@ class Difference:
 
     row: int
     column: int
-    expected: tuple[int, int, int]
-    """Colour of the pixel in the sequential picture; equal to ``obtained`` if only tests differ."""
-    obtained: tuple[int, int, int]
     reason: str
+    expected: tuple[int, int, int] | None = None
+    """Colour of the pixel in the sequential picture; equal to ``obtained`` if only tests differ;
+    None if the workload records no picture."""
+    obtained: tuple[int, int, int] | None = None
 
     def __str__(self) -> str:
-        colours = f"expected {self.expected}, got {self.obtained}"
-        return f"pixel ({self.row}, {self.column}): {colours}: {self.reason}"
+        colours = f"expected {self.expected}, got {self.obtained}: " if self.expected else ""
+        return f"pixel ({self.row}, {self.column}): {colours}{self.reason}"
 
 
 def verify(
@@ -54,9 +55,17 @@ def verify(
     Raises
     ------
     WorkloadError
-        The workload is not of this scene and picture, or its hits do not spawn its rays.
+        The workload is not of this scene and picture.
     """
     replayed = traced(scene, picture, workload)
+    try:
+        return _compared(replayed, tested_rays, tested_objects)
+    except SpawnError as error:
+        return Difference(*_pixel_of(error.ray, replayed), error.problem)
+
+
+def _compared(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> Difference | None:
+    workload = replayed.workload
     problem = _wrong_test(workload, tested_rays, tested_objects)
     hits, distances = _hits_of_tests(replayed, *_existing(workload, tested_rays, tested_objects))
     wrong = (hits != workload.hits) | (distances != workload.hit_distances)
@@ -166,15 +175,19 @@ def _difference(replayed: Traced, hits: Ints, problem: tuple[int, str] | None) -
     if problem is None and not len(places):
         return None
     ray, reason = problem or (0, "the pictures differ")
-    columns = replayed.workload.picture[1]
-    pixel = int(replayed.workload.pixels[min(max(ray, 0), replayed.workload.n_rays - 1)])
-    last = replayed.picture.resolution - 1
-    row, column = min(pixel // columns, last), min(pixel % columns, last)
-    if len(places):
-        row, column = (int(k) for k in places[0])
+    row, column = (int(k) for k in places[0]) if len(places) else _pixel_of(ray, replayed)
     return Difference(
-        row, column, _colour(expected[row, column]), _colour(obtained[row, column]), reason
+        row, column, reason, _colour(expected[row, column]), _colour(obtained[row, column])
     )
+
+
+def _pixel_of(ray: int, replayed: Traced) -> tuple[int, int]:
+    """Row and column of the picture that a ray belongs to."""
+    workload = replayed.workload
+    pixel = int(workload.pixels[min(max(ray, 0), workload.n_rays - 1)])
+    last = replayed.picture.resolution - 1
+    row, column = divmod(pixel, workload.picture[1])
+    return min(row, last), min(column, last)
 
 
 def _colour(pixel: NDArray[np.uint8]) -> tuple[int, int, int]:
