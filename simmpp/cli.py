@@ -10,6 +10,7 @@ import click
 from simmpp.commands.machine import machine_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
+from simmpp.commands.workload import workload_command
 from simmpp.errors import InputError, ModelError
 
 INPUT_ERROR, MODEL_ERROR, INTERRUPTED = 2, 70, 130
@@ -55,3 +56,4 @@ def main() -> None:
 main.add_command(run_command)
 main.add_command(machine_command)
 main.add_command(scene_command)
+main.add_command(workload_command)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
@@ -18,6 +19,16 @@ def output() -> Console:
     """The console of results: plain text, as wide as the terminal."""
     width = None if sys.stdout.isatty() else WIDTH_OF_A_PIPE
     return Console(width=width, highlight=False, markup=False, emoji=False)
+
+
+def table(rows: Sequence[Mapping[str, object]]) -> Table:
+    """Rows with the same keys as a table; numbers to the right."""
+    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for name, value in (rows[0] if rows else {}).items():
+        shown.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
+    for row in rows:
+        shown.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
+    return shown
 
 
 def notice(text: str) -> None:

@@ -130,14 +130,20 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     return _checked(document.data, places, Path(path).parent)
 
 
-def config_from_mapping(mapping: Mapping[str, object]) -> Config:
+def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] = ()) -> Config:
     """Check a configuration given as Python data with the keys of the YAML file.
+
+    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
 
     Raises ConfigError, one line with key, value and what was expected.
     """
     if not isinstance(mapping, Mapping):
         raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
-    return _checked(copy.deepcopy(dict(mapping)), {}, Path())
+    data = copy.deepcopy(dict(mapping))
+    places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
+    for assignment in overrides:
+        override(data, assignment, places)
+    return _checked(data, places, Path())
 
 
 def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:

@@ -153,6 +153,8 @@ def _format(path: Path) -> Any:
 
 def _read(path: Path) -> Tables:
     tables = _format(path)
+    if not path.is_file():
+        raise WorkloadError("there is no such file", where=str(path))
     try:
         read: Tables = tables.read(path)
     except UNREADABLE as error:

@@ -33,7 +33,7 @@ def read(path: Path) -> Tables:
 
 def _tables(path: Path) -> Tables:
     beside = objects_path(path)
-    if path.exists() and not beside.exists():
+    if not beside.is_file():
         expected = f"expected the table of objects beside it, {beside.name}"
         raise WorkloadError(expected, where=str(path))
     rays, metadata = _table(path)

@@ -1,0 +1,79 @@
+"""``simmpp workload``: what the rays of a picture ask for, and their export to other tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from simmpp.workload.workload import Workload
+
+OBJECTS_SHOWN = 20
+
+
+@click.command("workload")
+@click.argument("spec")
+@click.option("--export", type=click.Path(path_type=Path), help="Write it as .parquet or .npz.")
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Set a dotted key of the configuration, such as picture.resolution=128; repeatable.",
+)
+@click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
+def workload_command(
+    spec: str, export: Path | None, overrides: tuple[str, ...], all_objects: bool
+) -> None:
+    """List the rays of a picture: by kind, their tests, how much each object is used.
+
+    SPEC is a scene as `simmpp scene` takes it, a workload file (.parquet or .npz), or a
+    configuration (.yaml). --export writes rays and objects as tables that other tools can read
+    and `scene: {workload: FILE}` reads back.
+    """
+    from simmpp.commands.files import writable
+    from simmpp.commands.tracing import workload
+    from simmpp.errors import ConfigError
+    from simmpp.sweep.config import config_from_mapping, load_config
+    from simmpp.workload.exchange import SUFFIXES, export_workload, is_workload
+
+    writable(export, "--export")
+    if export and not is_workload(export.name):
+        expected = f"expected a file {' or '.join(SUFFIXES)}"
+        raise ConfigError(f"--export: value {str(export)!r}: {expected}")
+    if spec.lower().endswith((".yaml", ".yml")):
+        config = load_config(spec, overrides)
+    else:
+        config = config_from_mapping({"scene": spec}, overrides)
+    chosen = workload(config)
+    if export:
+        export_workload(chosen, export)
+    _list(chosen, None if all_objects else OBJECTS_SHOWN)
+
+
+def _list(workload: Workload, most_objects: int | None) -> None:
+    from simmpp.commands.terminal import output, table
+    from simmpp.units import format_bytes
+    from simmpp.workload.describe import generations, object_uses, rays_by_kind
+
+    console = output()
+    rows, columns = workload.picture
+    uses = object_uses(workload)
+    tested = sum(use["tests"] != 0 for use in uses)
+    size = format_bytes(int(workload.object_bytes.sum()))
+    depths = ", ".join(map(str, generations(workload)))
+    console.print(
+        f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "
+        f"{workload.n_tests} tests\n"
+        f"{workload.n_objects} objects, {size}; {tested} of them tested\n"
+        f"rays by depth: {depths}",
+        soft_wrap=True,
+    )
+    console.print()
+    console.print(table(rays_by_kind(workload)))
+    console.print()
+    console.print(table(uses[:most_objects]))
+    if most_objects is not None and len(uses) > most_objects:
+        console.print(f"... and {len(uses) - most_objects} more objects; --objects lists all")

@@ -1,0 +1,58 @@
+"""What a workload holds, in numbers: rays by kind, tests, and how much each object is used."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.workload.workload import OBJECT_KINDS, RAY_KINDS, Workload
+
+Fact = dict[str, int | float | str]
+
+
+def rays_by_kind(workload: Workload) -> list[Fact]:
+    """One row per kind of ray that occurs, and one for all."""
+    lengths = np.diff(workload.itinerary_offsets)
+    rows = [
+        _row(name, lengths[workload.kinds == kind])
+        for kind, name in enumerate(RAY_KINDS)
+        if (workload.kinds == kind).any()
+    ]
+    return [*rows, _row("all", lengths)]
+
+
+def _row(name: str, lengths: NDArray[np.int64]) -> Fact:
+    return {
+        "kind": name,
+        "rays": len(lengths),
+        "tests": int(lengths.sum()),
+        "mean itinerary": round(float(lengths.mean()), 3) if len(lengths) else 0.0,
+        "longest": int(lengths.max(initial=0)),
+        "without tests": int((lengths == 0).sum()),
+    }
+
+
+def generations(workload: Workload) -> list[int]:
+    """Rays of depth 1, 2, ..."""
+    counts, first, last = [], 0, workload.n_primaries
+    while first < last:
+        counts.append(last - first)
+        first, last = last, int(workload.child_offsets[last])
+    return counts
+
+
+def object_uses(workload: Workload) -> list[Fact]:
+    """One row per object, the most tested first."""
+    tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
+    own_cost = len(workload.object_test_ps) > 0
+    return [
+        {
+            "object": int(n),
+            "kind": OBJECT_KINDS[workload.object_kinds[n]],
+            "bytes": int(workload.object_bytes[n]),
+            "triangles": int(workload.object_triangles[n]),
+            **({"test_ps": int(workload.object_test_ps[n])} if own_cost else {}),
+            "tests": int(tests[n]),
+        }
+        for n in np.argsort(-tests, kind="stable")
+    ]
