@@ -64,7 +64,8 @@ def _cone_boxes(items: Sequence[SceneObject]) -> Floats:
     base, base_radius, apex, apex_radius = np.split(values, (3, 4, 7), axis=1)
     along = (apex - base) ** 2
     across = along[:, [1, 0, 0]] + along[:, [2, 2, 1]]
-    reach = np.sqrt(across / along.sum(axis=1, keepdims=True))
+    length = along.sum(axis=1, keepdims=True)
+    reach = np.sqrt(across / np.where(length > 0, length, 1))
     base_reach, apex_reach = np.abs(base_radius) * reach, np.abs(apex_radius) * reach
     low = np.minimum(base - base_reach, apex - apex_reach)
     high = np.maximum(base + base_reach, apex + apex_reach)
