@@ -1,11 +1,11 @@
 """The tree of errors that simmpp raises; everything else is a bug.
 
-    SimmppError
-    +-- InputError      what the user gave is wrong: exit code 2, one line
-    |   +-- ConfigError     in a YAML file, a --set or a call
-    |   +-- SceneError      in an NFF or mesh file
-    |   +-- WorkloadError   in a workload file
-    +-- ModelError      an invariant of the simulated machine broke: a bug, or a policy that starves
+SimmppError
++-- InputError      what the user gave is wrong: exit code 2, one line
+|   +-- ConfigError     in a YAML file, a --set or a call
+|   +-- SceneError      in an NFF or mesh file
+|   +-- WorkloadError   in a workload file
++-- ModelError      an invariant of the simulated machine broke: a bug, or a policy that starves
 """
 
 from __future__ import annotations
