@@ -57,13 +57,23 @@ def cache_folder() -> Path:
     return Path(xdg) / "simmpp" if xdg else user_cache_path("simmpp", appauthor=False)
 
 
+def source_digest(*modules: str) -> str:
+    """Hexadecimal hash of the source of modules and of all that they import of this package."""
+    digest = hashlib.sha256()
+    for name in sorted(set[str]().union(*map(_closure, modules))):
+        digest.update(_source(name).encode())
+    return digest.hexdigest()[:16]
+
+
+def is_compiled(module: str) -> bool:
+    """Has machine code of this module, as it is now, been kept by an earlier run?"""
+    return any(_folder(module).rglob("*.nbi"))
+
+
 def _folder(module: str) -> Path:
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     root = Path(chosen) if chosen else cache_folder() / "compiled"
-    digest = hashlib.sha256()
-    for name in sorted(_closure(module)):
-        digest.update(_source(name).encode())
-    return root / digest.hexdigest()[:16]
+    return root / source_digest(module)
 
 
 def _closure(module: str) -> set[str]:

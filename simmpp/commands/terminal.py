@@ -36,6 +36,15 @@ def notice(text: str) -> None:
     click.echo(f"simmpp: {text}", err=True)
 
 
+def announce_compilation() -> None:
+    """Say why nothing seems to happen when the engine and the tracer are used for the first time."""
+    from simmpp.compiled import is_compiled
+
+    modules = ("simmpp.workload.candidates", "simmpp.engine.activities")
+    if not all(map(is_compiled, modules)):
+        notice("compiling for this machine, once: about half a minute")
+
+
 @contextmanager
 def progress_bars() -> Iterator[Progress]:
     """Bars on the error output; none when that isn't a terminal."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from simmpp.commands.terminal import notice, progress_bars
+from simmpp.commands.terminal import announce_compilation, notice, progress_bars
 from simmpp.scene.scene import Scene
 from simmpp.sweep.config import Config
 from simmpp.sweep.workloads import workload_of
@@ -29,6 +29,7 @@ def traced(scene: Scene, picture: Picture) -> Workload:
 
 @contextmanager
 def _bar() -> Iterator[Progress]:
+    announce_compilation()
     with progress_bars() as bars:
         bar = bars.add_task("tracing rays", total=None)
         yield lambda done, total: bars.update(bar, completed=done, total=total)
