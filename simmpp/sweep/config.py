@@ -146,6 +146,15 @@ def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] 
     return _checked(data, places, Path())
 
 
+def with_key(config: Config, key: str, value: object) -> Config:
+    """The same configuration and sweep, with one dotted key set."""
+    if config.source is None:
+        raise ValueError("expected a configuration that keeps its source")
+    data, places = copy.deepcopy(config.source.data), dict(config.source.places)
+    set_key(data, key, value, places, ("", None))
+    return _checked(data, places, config.source.folder)
+
+
 def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
     """The configuration, once it and all values that are swept are found right."""
     settings = structure(Settings, data, places)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from simmpp.engine.result import Result
 from simmpp.sweep.point import Point, PolicyRun
+from simmpp.sweep.tables import Row, sort_key, write_csv
 
 KEYS = ("scene", "processors", "fraction", "effective_fraction", "policy", "seed")
 NUMBERS = (
@@ -33,12 +34,20 @@ NUMBERS = (
 """Integers of a result; times of PEs are sums over them."""
 COLUMNS = (*KEYS, "method", "engine", *NUMBERS, "error")
 
-Row = dict[str, object]
+
+def result_columns(further: Sequence[str] = ()) -> tuple[str, ...]:
+    """The columns of ``results.csv`` with those of a sweep's further keys."""
+    return (*KEYS, *further, *COLUMNS[len(KEYS) :])
 
 
 def numbers(run: PolicyRun) -> dict[str, int]:
     """The integers of a run, by column."""
-    values = {column: np.atleast_1d(getattr(run.result, column)) for column in NUMBERS}
+    return integers(run.result)
+
+
+def integers(result: Result) -> dict[str, int]:
+    """The integers of a result, by column."""
+    values = {column: np.atleast_1d(getattr(result, column)) for column in NUMBERS}
     return {column: sum(value.tolist()) for column, value in values.items()}
 
 
@@ -60,15 +69,11 @@ def row(point: Point, run: PolicyRun) -> Row:
     }
 
 
-def write_rows(rows: Iterable[Row], path: Path) -> None:
-    """Write rows sorted by their keys; equal rows give equal bytes."""
-    ordered = sorted(rows, key=_order)
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(ordered)
+def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
+    """Rows sorted by their keys."""
+    return sorted(rows, key=lambda row: sort_key(row, (*KEYS, *further, "method", "engine")))
 
 
-def _order(row: Row) -> list[tuple[bool, object]]:
-    """Numbers by size, before the empty text of what was not given."""
-    return [(isinstance(row[key], str), row[key]) for key in KEYS]
+def write_rows(rows: Iterable[Row], path: Path, further: Sequence[str] = ()) -> None:
+    """Write ``results.csv``, sorted."""
+    write_csv(in_order(rows, further), result_columns(further), path)

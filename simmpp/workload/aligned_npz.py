@@ -7,6 +7,7 @@ Android's zipalign does. Any npz reader reads the result.
 
 from __future__ import annotations
 
+import io
 import struct
 import zipfile
 import zlib
@@ -23,6 +24,8 @@ PADDING_ID = 0xD935
 """Extra field of zipalign: readers skip it."""
 ZIP64_BYTES, LOCAL_BYTES = 20, 30
 """Of the extra field for sizes above 4 GiB, and of a member's header without name and extra."""
+MOST_HEADER_BYTES = 4096
+"""Of an npy file, which says a type and a shape."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The earliest time that a zip archive can say, so that equal arrays make equal files."""
 
@@ -61,14 +64,14 @@ def _member(content: NDArray[np.uint8], member: zipfile.ZipInfo) -> NDArray[np.u
     lengths = (content[at + 26 : at + 28], content[at + 28 : at + LOCAL_BYTES])  # name, extra field
     at += LOCAL_BYTES + sum(int.from_bytes(length.tobytes(), "little") for length in lengths)
     data = np.asarray(content[at : at + member.file_size])
-    if zlib.crc32(data) != member.CRC:
+    if zlib.crc32(data.data) != member.CRC:
         raise ValueError(f"{member.filename}: damaged, its checksum does not fit")
     return data
 
 
 def _array(data: NDArray[np.uint8]) -> NDArray[Any]:
     """The array of an npy file."""
-    head = _Head(data)
+    head = io.BytesIO(data[:MOST_HEADER_BYTES].tobytes())
     version = np.lib.format.read_magic(head)
     read = np.lib.format.read_array_header_1_0
     if version != (1, 0):
@@ -76,18 +79,5 @@ def _array(data: NDArray[np.uint8]) -> NDArray[Any]:
     shape, fortran, dtype = read(head)
     if (fortran and len(shape) > 1) or dtype.hasobject:
         raise ValueError("expected an array in C order, without objects")
-    array = data[head.at :].view(dtype).reshape(shape)
+    array = data[head.tell() :].view(dtype).reshape(shape)
     return array if array.flags.aligned else array.copy()
-
-
-class _Head:
-    """As much of a file as numpy needs to read the header of an array in memory."""
-
-    def __init__(self, data: NDArray[np.uint8]) -> None:
-        self.data, self.at = data, 0
-
-    def read(self, size: int) -> bytes:
-        """The next bytes."""
-        chunk = self.data[self.at : self.at + size].tobytes()
-        self.at += len(chunk)
-        return chunk

@@ -1,0 +1,130 @@
+"""Who runs the tasks of a sweep: this process, processes beside it, or the workers of a cluster."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from multiprocessing.connection import Connection
+from typing import Any, ParamSpec, TypeVar
+
+from simmpp.compiled import cache_folder
+from simmpp.errors import ConfigError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+CONNECT_S, WORKERS_S = 10, 60
+"""Seconds to wait for a cluster's scheduler, and for its first worker."""
+
+
+class Crew:
+    """Anything with the interface of ``concurrent.futures.Executor``."""
+
+    def __init__(self, executor: Executor, most_in_flight: int) -> None:
+        self.executor = executor
+        self.most_in_flight = most_in_flight
+        """Tasks that are given out and not back: enough to keep all busy, no more to be lost."""
+
+    def renew(self) -> None:
+        """Make the executor anew after one of its workers died, if it doesn't do so itself."""
+
+    def close(self) -> None:
+        """End at once, whatever is still in flight."""
+        self.executor.shutdown(wait=False, cancel_futures=True)
+
+
+class _Here(Executor):
+    """Runs each task when it is given."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        future: Future[T] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+class Processes(Crew):
+    """Processes on this machine, which end with this one however it ends."""
+
+    def __init__(self, workers: int) -> None:
+        self._workers = workers
+        executor, self._leash = _pool(workers)
+        super().__init__(executor, 2 * workers)
+
+    def renew(self) -> None:
+        """A pool is broken for good when one of its processes dies."""
+        self.close()
+        self.executor, self._leash = _pool(self._workers)
+
+    def close(self) -> None:
+        """Workers end when the leash does."""
+        self._leash.close()
+        super().close()
+
+
+def _pool(workers: int) -> tuple[Executor, Connection]:
+    """A pool of fresh processes (a fork of this one would copy the locks of its threads)."""
+    method = "spawn" if sys.platform == "win32" else "forkserver"
+    context: Any = multiprocessing.get_context(method)
+    if method == "forkserver":
+        context.set_forkserver_preload(["simmpp.sweep.worker"])
+    held, leash = context.Pipe(duplex=False)
+    arguments = (held, str(cache_folder()))
+    return ProcessPoolExecutor(workers, context, _begin, arguments), leash
+
+
+def _begin(held: Connection, cache: str) -> None:
+    """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
+    os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(held,), daemon=True).start()
+
+
+def _end_with(held: Connection) -> None:
+    try:
+        held.recv_bytes()
+    except (EOFError, OSError):
+        os._exit(1)
+
+
+class Cluster(Crew):
+    """The workers of a Dask scheduler, which gives the tasks of a dead worker to others itself."""
+
+    def __init__(self, address: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ConfigError(
+                "--cluster: needs Dask's distributed: pip install 'simmpp[cluster]'"
+            ) from None
+        try:
+            client: Any = Client  # has no types
+            self._client = client(address, timeout=CONNECT_S, set_as_default=False)
+            self._client.wait_for_workers(1, timeout=WORKERS_S)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ConfigError(f"--cluster: value {address!r}: {_line(error)}") from None
+        threads = sum(self._client.nthreads().values())
+        super().__init__(self._client.get_executor(pure=False), 2 * threads)
+
+    def close(self) -> None:
+        """Leave the cluster as it was."""
+        super().close()
+        self._client.close()
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def crew_for(workers: int, cluster: str | None) -> Crew:
+    """A cluster's workers, or that many processes; one works right here.
+
+    Raises ConfigError if there is no such cluster.
+    """
+    if cluster is not None:
+        return Cluster(cluster)
+    return Crew(_Here(), 1) if workers == 1 else Processes(workers)

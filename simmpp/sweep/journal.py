@@ -1,0 +1,151 @@
+"""Finished simulations of a sweep, on disk one by one: what an interruption can't take away.
+
+``points.jsonl`` begins with a line that says which sweep it is of; each further line is an outcome.
+A line counts when its end is on the disk, so a torn one is the last and was never counted.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import IO, Any
+
+from simmpp.errors import ConfigError
+from simmpp.sweep.outcome import Outcome
+from simmpp.sweep.provenance import difference
+
+FILE = "points.jsonl"
+FORMAT = 1
+
+
+class Results:
+    """Finished simulations in memory."""
+
+    def __init__(self) -> None:
+        self.outcomes: dict[str, Outcome] = {}
+        """By the task's key: the last of each."""
+        self.trace_s: dict[str, float] = {}
+        """Seconds that tracing took, by the workload's digest."""
+        self.notices: list[str] = []
+        """What the user should know of what was found."""
+
+    def finished(self, key: str) -> bool:
+        """Whether a task is done; one that failed is not."""
+        return key in self.outcomes and not self.outcomes[key].error
+
+    def add(self, outcome: Outcome) -> None:
+        """Keep an outcome."""
+        self.outcomes[outcome.key] = outcome
+
+    def add_trace(self, digest: str, trace_s: float) -> None:
+        """Keep how long tracing a workload took."""
+        self.trace_s[digest] = trace_s
+
+    def close(self) -> None:
+        """Nothing is added from now on."""
+
+
+class Journal(Results):
+    """The same in one folder, held by one sweep at a time."""
+
+    def __init__(self, folder: Path, identity: Mapping[str, Any]) -> None:
+        """Open or begin the journal; ``identity`` is JSON data that says what the results are of.
+
+        Raises ConfigError if the folder holds the results of another sweep, or another process
+        works there.
+        """
+        super().__init__()
+        self.path = folder / FILE
+        try:
+            self._file: IO[bytes] = open(self.path, "a+b")  # noqa: SIM115
+        except OSError as error:
+            raise ConfigError(f"can't be written: {error.strerror}", where=str(self.path)) from None
+        try:
+            self._lock()
+            self._read({"format": FORMAT, **identity})
+        except BaseException:
+            self._file.close()
+            raise
+
+    def add(self, outcome: Outcome) -> None:
+        """Keep an outcome; when this returns it is on the disk."""
+        super().add(outcome)
+        self._append(asdict(outcome))
+
+    def add_trace(self, digest: str, trace_s: float) -> None:
+        """Keep how long tracing a workload took."""
+        super().add_trace(digest, trace_s)
+        self._append({"traced": digest, "trace_s": trace_s})
+
+    def close(self) -> None:
+        """Let others work in the folder."""
+        self._file.close()
+
+    def _append(self, entry: Mapping[str, Any]) -> None:
+        self._file.write(json.dumps(entry, allow_nan=False).encode() + b"\n")
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def _lock(self) -> None:
+        try:
+            import fcntl
+        except ImportError:  # not on Windows
+            return
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise ConfigError("another sweep is at work here", where=str(self.path)) from None
+
+    def _read(self, identity: Mapping[str, Any]) -> None:
+        self._file.seek(0)
+        lines = self._file.read().splitlines(keepends=True)
+        if lines and not lines[-1].endswith(b"\n"):
+            self._drop(lines.pop())
+        if not lines:
+            self._append(identity)
+            return
+        self._compare(self._parsed(lines[0], 1), identity)
+        for number, line in enumerate(lines[1:], 2):
+            self._take(self._parsed(line, number), number)
+
+    def _drop(self, line: bytes) -> None:
+        self.notices.append(f"{self.path}: the last line was torn and is dropped")
+        self._file.truncate(self._file.tell() - len(line))
+        self._file.seek(0, os.SEEK_END)
+
+    def _parsed(self, line: bytes, number: int) -> dict[str, Any]:
+        try:
+            entry = json.loads(line)
+        except ValueError:
+            entry = None
+        if not isinstance(entry, dict):
+            raise self._damaged(number)
+        return entry
+
+    def _compare(self, found: Mapping[str, Any], identity: Mapping[str, Any]) -> None:
+        if problem := difference(found, json.loads(json.dumps(identity))):
+            raise ConfigError(
+                f"holds results of another sweep ({problem}); expected another --out, or an empty "
+                "folder",
+                where=str(self.path.parent),
+            )
+
+    def _take(self, entry: dict[str, Any], number: int) -> None:
+        try:
+            if "traced" in entry:
+                self.trace_s[str(entry["traced"])] = float(entry["trace_s"])
+            else:
+                outcome = Outcome(**entry)
+                self.outcomes[outcome.key] = outcome
+        except (TypeError, ValueError, KeyError):
+            raise self._damaged(number) from None
+
+    def _damaged(self, number: int) -> ConfigError:
+        return ConfigError(
+            "damaged: expected a line of JSON; delete the file to begin anew",
+            where=str(self.path),
+            line=number,
+        )

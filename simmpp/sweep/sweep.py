@@ -1,0 +1,179 @@
+"""A whole sweep: what isn't simulated yet is, and the tables are written from what is there."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from simmpp.sweep.config import Config, config_from_mapping, load_config, with_key
+from simmpp.sweep.crew import Crew, crew_for
+from simmpp.sweep.execute import outcomes as execute
+from simmpp.sweep.journal import Journal, Results
+from simmpp.sweep.outcome import Outcome
+from simmpp.sweep.plan import Plan, plan
+from simmpp.sweep.profits import profit_columns, profit_rows
+from simmpp.sweep.provenance import all_versions
+from simmpp.sweep.rows import result_columns
+from simmpp.sweep.tables import Row, as_arrow, write_csv, write_parquet, write_text
+from simmpp.sweep.task import Task
+from simmpp.sweep.worker import keep_workload
+from simmpp.sweep.workloads import cache_workload
+
+if TYPE_CHECKING:
+    import pandas
+
+RESULTS, PARQUET, PROFITS, TIMINGS, RECORD = (
+    "results.csv",
+    "results.parquet",
+    "profits.csv",
+    "timings.csv",
+    "run.json",
+)
+
+
+class Watcher:
+    """Is told how a sweep gets on; this one says nothing."""
+
+    def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
+        """The points are known; some may be finished from before."""
+
+    def tracing(self, scene: str, done: int, total: int) -> None:
+        """Rays done and rays known of a workload that is being traced."""
+
+    def simulated(self, outcome: Outcome) -> None:
+        """One more task is finished."""
+
+    def notice(self, text: str) -> None:
+        """Something that the user should know."""
+
+
+class SweepResult(NamedTuple):
+    """The tables of a sweep."""
+
+    rows: pandas.DataFrame
+    """As results.csv: one row per point and seed."""
+    profits: pandas.DataFrame
+    """As profits.csv: one row per point."""
+
+
+def run_sweep(
+    config: Config | Mapping[str, object] | str | Path,
+    *,
+    workers: int = 1,
+    cluster: str | None = None,
+    engine: str | None = None,
+    timeout_s: float | None = None,
+    out: str | Path | None = None,
+    watcher: Watcher | None = None,
+) -> SweepResult:
+    """Simulate all points of a configuration, given as data or as the name of a YAML file.
+
+    Points run in this process, in ``workers`` processes, or on the Dask ``cluster`` of that
+    address; rows are the same. With ``out``, a folder, finished points are kept there, a second
+    call continues, and the tables are written as files. One point may take ``timeout_s`` seconds;
+    one that fails has its row with an ``error``.
+    Raises InputError if the configuration is wrong or the folder holds another sweep's results.
+    """
+    if isinstance(config, str | Path):
+        config = load_config(config)
+    elif not isinstance(config, Config):
+        config = config_from_mapping(config)
+    if engine is not None:
+        config = with_key(config, "engine", engine)
+    made = plan(config)
+    folder = None if out is None else Path(out)
+    with closing(_results(made, folder)) as results, closing(crew_for(workers, cluster)) as crew:
+        _simulate(made, results, crew, timeout_s, folder, watcher or Watcher())
+    rows = made.rows(results.outcomes)
+    return SweepResult(
+        _frame(rows, result_columns(made.further)),
+        _frame(profit_rows(rows, made.further), profit_columns(made.further)),
+    )
+
+
+def _results(plan: Plan, folder: Path | None) -> Results:
+    if folder is None:
+        return Results()
+    folder.mkdir(parents=True, exist_ok=True)
+    return Journal(folder, plan.identity)
+
+
+def _simulate(
+    plan: Plan,
+    results: Results,
+    crew: Crew,
+    timeout_s: float | None,
+    folder: Path | None,
+    watcher: Watcher,
+) -> None:
+    """Run what isn't finished; the tables are written even when interrupted."""
+    for text in results.notices:
+        watcher.notice(text)
+    pending = [task for task in plan.tasks if not results.finished(task.key)]
+    watcher.planned(plan, results.outcomes)
+    try:
+        _trace(plan, pending, results, watcher)
+        for outcome in execute(pending, crew, timeout_s):
+            results.add(outcome)
+            watcher.simulated(outcome)
+    finally:
+        if folder is not None:
+            write_tables(plan, results, folder)
+
+
+def _trace(plan: Plan, tasks: Sequence[Task], results: Results, watcher: Watcher) -> None:
+    """Bring the workloads that are needed into the cache, from where workers share them."""
+    scenes = {each.task.digest: each.scene for each in plan.points}
+    first_tasks = {task.digest: task for task in reversed(tasks)}
+    for digest, task in first_tasks.items():
+        began_s = time.perf_counter()
+        tell = partial(watcher.tracing, scenes[digest])
+        workload = cache_workload(task.config, digest, progress=tell, notice=watcher.notice)
+        if workload is not None:
+            keep_workload(workload)
+            results.add_trace(digest, time.perf_counter() - began_s)
+
+
+def write_tables(plan: Plan, results: Results, folder: Path) -> None:
+    """Write the tables of the points that are finished, and what they are of."""
+    rows, further = plan.rows(results.outcomes), plan.further
+    write_csv(rows, result_columns(further), folder / RESULTS)
+    write_parquet(rows, result_columns(further), folder / PARQUET)
+    write_csv(profit_rows(rows, further), profit_columns(further), folder / PROFITS)
+    timings = plan.timings(results.outcomes, results.trace_s)
+    write_csv(timings, plan.timing_columns, folder / TIMINGS)
+    write_text(json.dumps(_record(plan), indent=1) + "\n", folder / RECORD)
+
+
+def _record(plan: Plan) -> dict[str, object]:
+    """``run.json``: nothing in it depends on when, where or how fast the sweep ran."""
+    machines: dict[str, dict[str, object]] = {}
+    for each in plan.points:
+        config = each.point.config
+        constants = asdict(config.machine_for(config.processors))
+        machines.setdefault(json.dumps(constants), constants)
+    return {
+        **plan.identity,
+        "versions": all_versions(),
+        "points": len(plan.points),
+        "simulations": len(plan.tasks),
+        "further_columns": list(plan.further),
+        "machines": list(machines.values()),
+    }
+
+
+def _frame(rows: list[Row], columns: Sequence[str]) -> pandas.DataFrame:
+    """A table for Python; integers stay integers where some are missing."""
+    import pandas
+    import pyarrow
+
+    table = as_arrow(rows, columns)
+    gaps = any(table[name].null_count for name in columns if table[name].type == pyarrow.int64())
+    nullable = {pyarrow.int64(): pandas.Int64Dtype()}
+    return table.to_pandas(types_mapper=nullable.get if gaps else None)

@@ -1,0 +1,79 @@
+"""What is simulated once: a point without its names, known by a hash of all that decides it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.table import POLICIES
+from simmpp.sweep.config import Config
+from simmpp.sweep.grid import GridPoint
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One simulation, as small as can be sent to another machine."""
+
+    key: str
+    """Hexadecimal hash: equal points have equal keys, whatever they are called."""
+    placement_key: str
+    """Likewise, of the workload, the machine and the placement."""
+    digest: str
+    """Of the workload."""
+    config: Config
+    policy: PolicyParameters
+    seed: int
+
+
+def task_of(point: GridPoint, digest: str) -> Task:
+    """The simulation of a point on the workload of that digest.
+
+    Raises ConfigError if the machine does not have the point's number of PEs.
+    """
+    config, policy = point.config, canonical(point.policy)
+    everywhere = POLICIES[policy.name].all_resident
+    memory = Memory() if everywhere else _canonical(config.memory)
+    rules = config.placement_rules
+    if everywhere:
+        rules = PlacementRules(pixels=rules.pixels)
+    machine = asdict(config.machine_for(config.processors))
+    for label in ("name", "sources"):
+        del machine[label]
+    place = _hash(digest, machine, asdict(memory), asdict(rules), point.seed)
+    settings = config.settings
+    return Task(
+        key=_hash(place, asdict(policy), settings.ready_order, settings.method, settings.engine),
+        placement_key=place,
+        digest=digest,
+        config=replace(config, source=None),
+        policy=policy,
+        seed=point.seed,
+    )
+
+
+def canonical(policy: PolicyParameters) -> PolicyParameters:
+    """The policy without its label, and with the defaults of what its rules do not read."""
+    rules, defaults = POLICIES[policy.name], PolicyParameters(policy.name)
+    if rules.all_resident:
+        return defaults
+    ignored = ["label"]
+    ignored += [] if rules.sends else ["min_load", "batch"]
+    ignored += [] if rules.knows_loads else ["load_info"]
+    ignored += [] if rules.asks else ["merge_requests"]
+    ignored += [] if rules.asks and rules.ask_at_least is None else ["ask_at_least"]
+    unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
+    return replace(policy, **unread)
+
+
+def _canonical(memory: Memory) -> Memory:
+    return memory if memory.bytes is None else replace(memory, fraction=Memory().fraction)
+
+
+def _hash(*parts: object) -> str:
+    """SHA-256 of plain data; fractions and the like as text."""
+    text = json.dumps(parts, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
