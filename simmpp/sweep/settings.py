@@ -148,6 +148,11 @@ class CheckSettings(Strict):
     speedup: Tolerance = Field(default=None, description="likewise of the speedup")
     efficiency: Tolerance = Field(default=None, description="likewise of the efficiency")
 
+    @property
+    def tolerances(self) -> dict[str, Fraction]:
+        """Relative change allowed of each profit named."""
+        return {name: share for name, share in self if share is not None}
+
 
 class Settings(Strict):
     """A whole configuration."""
