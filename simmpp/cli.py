@@ -1,4 +1,4 @@
-"""The command line: ``simmpp run``, ``machine``, ``scene``; mistakes become one line."""
+"""The command line: ``simmpp run``, ``sweep`` and the others; mistakes become one line."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from simmpp.commands.machine import machine_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
+from simmpp.commands.sweep import sweep_command
 from simmpp.commands.workload import workload_command
 from simmpp.errors import InputError, ModelError
 
@@ -54,6 +55,7 @@ def main() -> None:
 
 
 main.add_command(run_command)
+main.add_command(sweep_command)
 main.add_command(machine_command)
 main.add_command(scene_command)
 main.add_command(workload_command)

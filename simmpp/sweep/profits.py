@@ -69,6 +69,29 @@ def _over_seeds(by_seed: dict[int, Row], references: dict[int, Row], further: Se
     return result
 
 
+def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, float] | None:
+    """The policy with the highest time profit over the rows that are there, and its geometric mean.
+
+    None as long as no policy can be compared.
+    """
+    names = [name for name in (*_keys(further), "seed") if name != "effective_fraction"]
+    names.remove("policy")
+    points: dict[tuple[object, ...], dict[str, Row]] = {}
+    for row in rows:
+        if not row["error"]:
+            points.setdefault(tuple(row[name] for name in names), {})[row["policy"]] = row
+    logarithms: dict[str, list[float]] = {}
+    for policies in points.values():
+        base = policies.pop(REFERENCE, None)
+        for policy, row in policies.items() if base else ():
+            if base and base["makespan_ps"] and row["makespan_ps"]:
+                gain = math.log(base["makespan_ps"] / row["makespan_ps"])
+                logarithms.setdefault(policy, []).append(gain)
+    means = {policy: fmean(gains) for policy, gains in logarithms.items()}
+    best = max(means, key=lambda policy: means[policy], default=None)
+    return None if best is None else (best, math.exp(means[best]))
+
+
 def _mean(values: Sequence[float]) -> float | str:
     return fmean(values) if values else ""
 

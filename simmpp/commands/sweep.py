@@ -1,0 +1,142 @@
+"""``simmpp sweep``: all points of a configuration, as tables; interrupted, it can be continued."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Hashable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from simmpp.sweep.sweep import SweepResult
+
+POINTS_FAILED = 1
+PROFITS_SHOWN = 40
+
+
+@click.command("sweep")
+@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 4096),
+    help="Processes on this machine; 1 works in this one.  [default: one for each core]",
+)
+@click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
+@click.option("--engine", help="The event loop.  [default: the key engine, or else compiled]")
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable.",
+)
+@click.option(
+    "--timeout",
+    "timeout_s",
+    type=click.FloatRange(0, min_open=True),
+    metavar="SECONDS",
+    help="A point that takes longer has failed.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the tables.  [default: results/NAME-OF-CONFIG]",
+)
+def sweep_command(
+    config_path: Path,
+    workers: int | None,
+    cluster: str | None,
+    engine: str | None,
+    overrides: tuple[str, ...],
+    timeout_s: float | None,
+    out: Path | None,
+) -> None:
+    """Simulate every combination of the values under the key sweep.
+
+    Writes results.csv, results.parquet, profits.csv, timings.csv and run.json. Object dataflow is
+    run as the reference of the profits, if it is not named, and has its rows. The same command
+    continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
+    """
+    from simmpp.commands.files import folder
+    from simmpp.commands.sweeping import progress_of_sweep
+    from simmpp.commands.terminal import announce_compilation
+    from simmpp.errors import ConfigError
+    from simmpp.sweep.config import load_config
+    from simmpp.sweep.sweep import run_sweep
+
+    if workers is not None and cluster is not None:
+        raise ConfigError("expected --workers or --cluster, got both")
+    if engine is not None:
+        overrides = (*overrides, f"engine={engine}")
+    config = load_config(config_path, overrides)
+    out = Path("results", config_path.stem) if out is None else out
+    folder(out, "--out")
+    announce_compilation()
+    with progress_of_sweep() as watcher:
+        result = run_sweep(
+            config,
+            workers=workers or available_cores(),
+            cluster=cluster,
+            timeout_s=timeout_s,
+            out=out,
+            watcher=watcher,
+        )
+    sys.exit(_conclude(result, out))
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _conclude(result: SweepResult, out: Path) -> int:
+    """Print what came out; the exit code."""
+    from simmpp.commands.terminal import notice, output
+
+    rows = result.rows
+    failed = rows[rows["error"].notna()]
+    output().print(_table(result))
+    click.echo(f"\n{len(rows)} rows, {len(failed)} failed: {out / 'results.csv'}")
+    for error, count in failed["error"].value_counts().items():
+        notice(f"{count} failed: {error}")
+    return POINTS_FAILED if len(failed) else 0
+
+
+def _table(result: SweepResult) -> Table:
+    """The first profits; the reference's own say nothing."""
+    from rich.table import Table
+
+    from simmpp.sweep.point import REFERENCE
+
+    profits = result.profits[result.profits["policy"] != REFERENCE]
+    names = list(profits.columns[: profits.columns.get_loc("n")])
+    names.remove("effective_fraction")
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for name in (*names, "time profit", "message profit"):
+        table.add_column(name, no_wrap=True, justify="left" if name in names else "right")
+    for row in profits.head(PROFITS_SHOWN).to_dict("records"):
+        shown = [_cell(row[name]) for name in names]
+        table.add_row(*shown, _profit(row, "time_profit"), _profit(row, "message_profit"))
+    if len(profits) > PROFITS_SHOWN:
+        table.add_row(f"... {len(profits) - PROFITS_SHOWN} more")
+    return table
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:
+        return ""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _profit(row: Mapping[Hashable, float], measure: str) -> str:
+    """Mean and half of the 95 % interval."""
+    mean, low, high = (row[measure + end] for end in ("", "_low", "_high"))
+    text = _cell(mean) if mean != mean or mean == float("inf") else f"{mean:.3f}"
+    return text if low != low else f"{text} +- {(high - low) / 2:.3f}"

@@ -1,0 +1,120 @@
+"""How a sweep gets on: a bar on a terminal, a line now and then in a pipe."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+from simmpp.commands.terminal import notice
+from simmpp.sweep.outcome import Outcome
+from simmpp.sweep.plan import Plan
+from simmpp.sweep.profits import best_policy
+from simmpp.sweep.sweep import Watcher
+
+LINES = 10
+"""Lines that a pipe gets in all."""
+BEST_S = 2
+"""Seconds between two looks for the best policy."""
+
+
+class Progressing(Watcher):
+    """Counts the simulations of a sweep."""
+
+    def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
+        """Begin to count; ``finished`` grows while the sweep runs."""
+        self._plan, self._finished = plan, finished
+        keys = {task.key for task in plan.tasks}
+        self.total = len(keys)
+        self.before = sum(key in keys and not finished[key].error for key in finished)
+        self.done, self.failed = self.before, 0
+        self._best, self._looked_s = "", -math.inf
+        if self.before:
+            notice(f"{self.before} of {self.total} simulations are there from before")
+
+    def simulated(self, outcome: Outcome) -> None:
+        """Count one."""
+        self.done += 1
+        self.failed += bool(outcome.error)
+
+    def notice(self, text: str) -> None:
+        """Say it."""
+        notice(text)
+
+    def more(self) -> str:
+        """What failed, and which policy is the fastest so far."""
+        if time.monotonic() - self._looked_s > BEST_S or self.done == self.total:
+            best = best_policy(self._plan.rows(self._finished), self._plan.further)
+            self._best = f"best so far: {best[0]} (time profit {best[1]:.2f})" if best else ""
+            self._looked_s = time.monotonic()
+        failed = f"{self.failed} failed" if self.failed else ""
+        return ", ".join(filter(None, (failed, self._best)))
+
+
+class Lines(Progressing):
+    """A line for each tenth of the simulations, for files and pipes."""
+
+    def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
+        """Begin."""
+        super().planned(plan, finished)
+        self._began_s = time.monotonic()
+
+    def simulated(self, outcome: Outcome) -> None:
+        """A line if that makes another tenth."""
+        before = LINES * self.done // self.total
+        super().simulated(outcome)
+        if LINES * self.done // self.total > before:
+            per_task_s = (time.monotonic() - self._began_s) / (self.done - self.before)
+            left_s = per_task_s * (self.total - self.done)
+            parts = (f"{self.done} of {self.total}", f"about {left_s:.0f} s left", self.more())
+            notice(", ".join(filter(None, parts)))
+
+
+class Bars(Progressing):
+    """A bar for tracing and one for the simulations."""
+
+    def __init__(self, bars: Progress) -> None:
+        self._bars = bars
+        self._tracing: dict[str, TaskID] = {}
+
+    def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
+        """Draw the bar."""
+        super().planned(plan, finished)
+        self._points = self._bars.add_task(
+            "simulating", total=self.total, completed=self.done, more=""
+        )
+
+    def tracing(self, scene: str, done: int, total: int) -> None:
+        """Draw the bar of a scene."""
+        if scene not in self._tracing:
+            self._tracing[scene] = self._bars.add_task(f"tracing {scene}", more="rays")
+        self._bars.update(self._tracing[scene], completed=done, total=total)
+
+    def simulated(self, outcome: Outcome) -> None:
+        """Move the bar."""
+        super().simulated(outcome)
+        self._bars.update(self._points, completed=self.done, more=self.more())
+
+
+@contextmanager
+def progress_of_sweep() -> Iterator[Watcher]:
+    """Who tells the user how a sweep gets on."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield Lines()
+        return
+    bars = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.0f} of {task.total:.0f}"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[more]}"),
+        console=console,
+        transient=True,
+    )
+    with bars:
+        yield Bars(bars)
