@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.errors import SceneError
-from simmpp.scene.scene import Cone, Polygon, Scene, SceneObject, Sphere
+from simmpp.scene.scene import Cone, MeshPart, Polygon, Scene, SceneObject, Sphere
 from simmpp.scene.triangles import triangles
 from simmpp.workload import bvh
 from simmpp.workload.normalise import Frame
@@ -76,11 +76,9 @@ class Geometry(NamedTuple):
 def flatten(scene: Scene, frame: Frame) -> Geometry:
     """The arrays of ``scene`` in ``frame``."""
     things = scene.objects
-    rows = [_rows(thing, frame) for thing in things]
     kinds = np.array([_kind(thing) for thing in things], dtype=np.int32)
-    counts = np.array([len(part) for part in rows], dtype=np.int32)
+    surfaces, counts = _surfaces(things, frame)
     after = np.cumsum(counts, dtype=np.int32)
-    surfaces = np.concatenate([np.empty((0, 9)), *rows])
     boxes = padded(_boxes(kinds, after - counts, surfaces))
     box = np.concatenate(
         [boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)]
@@ -127,16 +125,27 @@ def _kind(thing: SceneObject) -> int:
     return POLYGON if isinstance(thing, Polygon) else MESH
 
 
-def _rows(thing: SceneObject, frame: Frame) -> Floats:
-    """Rows (k, 9) float64 of ``Shapes.surfaces`` for one object."""
-    if isinstance(thing, Sphere):
-        row = np.zeros((1, 9))
-        row[0, :3] = frame.points(np.array(thing.centre))
-        row[0, 3] = abs(thing.radius) * frame.scale
-        return row
+def _surfaces(things: tuple[SceneObject, ...], frame: Frame) -> tuple[Floats, Ints]:
+    """``Shapes.surfaces`` of all objects, and how many rows each has, (N,) int32."""
+    flat = [triangles(thing) for thing in things if isinstance(thing, Polygon | MeshPart)]
+    round_rows = [_round_row(thing, frame) for thing in things if isinstance(thing, Sphere | Cone)]
+    is_round = np.array([isinstance(thing, Sphere | Cone) for thing in things], dtype=np.bool_)
+    counts = np.ones(len(things), dtype=np.int32)
+    counts[~is_round] = [len(part) for part in flat]
+    surfaces = np.empty((counts.sum(), 9))
+    of_round = np.repeat(is_round, counts)
+    surfaces[of_round] = np.array(round_rows).reshape(-1, 9)
+    surfaces[~of_round] = _with_edges(frame.points(np.concatenate([np.empty((0, 3, 3)), *flat])))
+    return surfaces, counts
+
+
+def _round_row(thing: Sphere | Cone, frame: Frame) -> Floats:
     if isinstance(thing, Cone):
         return _cone(thing, frame)
-    return _with_edges(frame.points(triangles(thing)))
+    row = np.zeros(9)
+    row[:3] = frame.points(np.array(thing.centre))
+    row[3] = abs(thing.radius) * frame.scale
+    return row
 
 
 def _cone(cone: Cone, frame: Frame) -> Floats:
@@ -145,9 +154,9 @@ def _cone(cone: Cone, frame: Frame) -> Floats:
     height = float(np.sqrt(((apex - base) ** 2).sum()))
     radius, apex_radius = abs(cone.base_radius) * frame.scale, abs(cone.apex_radius) * frame.scale
     if height == 0.0 or max(radius, apex_radius) == 0.0:
-        return np.array([[*base, 0.0, 0.0, 1.0, 0.0, radius, 0.0]])
+        return np.array([*base, 0.0, 0.0, 1.0, 0.0, radius, 0.0])
     axis, growth = (apex - base) / height, (apex_radius - radius) / height
-    return np.array([[*base, *axis, height, radius, growth]])
+    return np.array([*base, *axis, height, radius, growth])
 
 
 def _with_edges(corners: Floats) -> Floats:
@@ -190,9 +199,12 @@ def _triangle_boxes(rows: Floats) -> Floats:
 
 
 def _cone_boxes(cones: Floats) -> Floats:
-    """Boxes of the two rims of each cone (n, 9): a disc reaches r sqrt(1 - axis^2) to each side."""
+    """Boxes of the two rims of each cone (n, 9): a disc reaches r sqrt(1 - axis^2) to each side.
+
+    1 - axis^2 is the sum of the other two squares: a difference would lose half the digits.
+    """
     base, axis, height, radius, growth = np.split(cones, (3, 6, 7, 8), axis=1)
-    reach = np.sqrt(np.maximum(0.0, 1.0 - axis**2))
+    reach = np.sqrt(axis[:, [1, 0, 0]] ** 2 + axis[:, [2, 2, 1]] ** 2)
     apex, apex_radius = base + height * axis, radius + height * growth
     low = np.minimum(base - radius * reach, apex - apex_radius * reach)
     high = np.maximum(base + radius * reach, apex + apex_radius * reach)

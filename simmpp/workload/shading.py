@@ -51,7 +51,7 @@ def render(scene: Scene, picture: Picture, workload: Workload) -> NDArray[np.uin
     WorkloadError
         The workload is not of this scene and picture.
     """
-    return shade(traced(scene, picture, workload), workload.hits)
+    return shade(traced(scene, picture, workload), workload.hits.copy())
 
 
 def save_png(image: NDArray[np.uint8], path: str | os.PathLike[str]) -> None:

@@ -170,7 +170,7 @@ def _wrong_test(
 
 def _difference(replayed: Traced, hits: Ints, problem: tuple[int, str] | None) -> Difference | None:
     """Where the pictures differ first, else where the ray of ``problem`` belongs."""
-    expected, obtained = shade(replayed, replayed.workload.hits), shade(replayed, hits)
+    expected, obtained = shade(replayed, replayed.workload.hits.copy()), shade(replayed, hits)
     places = np.argwhere((expected != obtained).any(axis=2))
     if problem is None and not len(places):
         return None

@@ -1,0 +1,110 @@
+"""Where the time and memory of a trace go: python tests/bench/bench_trace.py [SCENE ...]
+
+Prints stage, seconds, share, and the whole in multiples of what embree alone needs for the nearest
+hits of the same rays. Asserts nothing.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from simmpp.scene.load import load_scene
+from simmpp.scene.scene import Scene
+from simmpp.workload.candidates import find_itineraries
+from simmpp.workload.geometry import Geometry, flatten
+from simmpp.workload.intersect import Intersector
+from simmpp.workload.normalise import frame_of
+from simmpp.workload.picture import Picture
+from simmpp.workload.rays import Rays, children, first_generation, joined, spawning
+from simmpp.workload.tracer import BATCH, trace
+from simmpp.workload.workload import SHADOW
+
+REPEATS = 3
+
+
+class Stages:
+    """Seconds by name."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    def time(self, name: str, work: Callable, *args):
+        start = time.perf_counter()
+        result = work(*args)
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+        return result
+
+
+def stages_of(scene: Scene, picture: Picture) -> Stages:
+    stages = Stages()
+    frame = stages.time("frame", frame_of, scene)
+    geometry = stages.time("geometry and trees", flatten, scene, frame)
+    proposer = stages.time("embree: build", Intersector, geometry)
+    rules = spawning(scene, picture, frame, geometry)
+    rays = stages.time("primary rays", first_generation, scene, picture, frame)
+    depth = 0
+    while len(rays.kinds):
+        depth += 1
+        spawned = [
+            batch(stages, geometry, proposer, rules, rays.part(low, low + BATCH), depth)
+            for low in range(0, len(rays.kinds), BATCH)
+        ]
+        rays = stages.time("joining", joined, spawned)
+    return stages
+
+
+def batch(stages, geometry: Geometry, proposer: Intersector, rules, rays: Rays, depth: int) -> Rays:
+    asks = rays.kinds != SHADOW
+    claims = np.full((len(asks), 2), -1, dtype=np.int32)
+    some = rays.origins[asks], rays.directions[asks]
+    claims[asks] = stages.time("embree: proposals", proposer.claims, *some)
+    others = rays.origins[~asks], rays.directions[~asks]
+    stages.time("(embree: shadow rays, not needed)", proposer.claims, *others)
+    hits, distances, _, _ = stages.time(
+        "itineraries and hits",
+        find_itineraries,
+        geometry.shapes,
+        *rays[:5],
+        claims,
+    )
+    young, _ = stages.time("spawning", children, geometry, rays, hits, distances, rules, depth, 0)
+    return young
+
+
+def main() -> None:
+    for name in sys.argv[1:] or ["mountain:5"]:
+        scene, picture = load_scene(name), Picture()
+        trace(scene, Picture(resolution=32))  # compiles
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        seconds = []
+        for _ in range(REPEATS):
+            start = time.perf_counter()
+            workload = trace(scene, picture)
+            seconds.append(time.perf_counter() - start)
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+        best = min(
+            (stages_of(scene, picture) for _ in range(REPEATS)),
+            key=lambda s: sum(s.seconds.values()),
+        )
+        counts = np.bincount(workload.kinds, minlength=4)
+        print(
+            f"{name}: {workload.n_objects} objects, {workload.n_rays} rays {counts}, "
+            f"{workload.n_tests} tests"
+        )
+        whole = sum(best.seconds.values())
+        for stage, spent in best.seconds.items():
+            print(f"  {stage:<36}{spent:8.3f} s {spent / whole:6.1%}")
+        embree = sum(best.seconds[s] for s in best.seconds if "proposals" in s or "shadow" in s)
+        print(
+            f"  trace {min(seconds):.3f} s = {min(seconds) / embree:.1f} x embree's {embree:.3f} s"
+        )
+        print(f"  memory at the peak {peak * 1024 / workload.n_rays:.0f} bytes per ray")
+
+
+if __name__ == "__main__":
+    main()
