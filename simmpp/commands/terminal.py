@@ -37,7 +37,7 @@ def notice(text: str) -> None:
 
 
 def announce_compilation() -> None:
-    """Say why nothing seems to happen when the engine and the tracer are used for the first time."""
+    """Say why nothing seems to happen when engine and tracer are used for the first time."""
     from simmpp.compiled import is_compiled
 
     modules = ("simmpp.workload.candidates", "simmpp.engine.activities")

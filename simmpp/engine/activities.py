@@ -50,6 +50,7 @@ from simmpp.engine.waiting import (
     unpin,
 )
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.work import CLOCK_LIMIT_PS
 
 SLEEP = -1
 
@@ -71,6 +72,8 @@ def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int)
     if s.n_sent == 0:
         next_ps = _begin(s, me, message, now_ps)
     pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
+    if next_ps > CLOCK_LIMIT_PS:
+        raise OverflowError("the clock")
     return next_ps
 
 

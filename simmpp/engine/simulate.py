@@ -15,6 +15,7 @@ from simmpp.engine.state import State, new_state
 from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError, ModelError
 from simmpp.machine.machine import Machine
+from simmpp.machine.work import beyond_the_clock, total_compute_ps
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.rules import DataflowPolicy
@@ -59,7 +60,10 @@ def simulate(
         log=log,
     )
     run = ENGINES[engine](state, progress)
-    run.run()
+    try:
+        run.run()
+    except OverflowError:
+        raise beyond_the_clock() from None
     return _conclude(state, run.arrivals, policy, engine)
 
 
@@ -86,6 +90,7 @@ def _check(
             f"the placement is for {len(placement.owners)} objects, "
             f"the workload has {workload.n_objects}"
         )
+    total_compute_ps(workload, machine)
 
 
 def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str) -> Result:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,26 +33,19 @@ class TestCost:
     per_triangle_ps: int = 0
     """Added for every triangle of a polygon or mesh beyond its first."""
 
-    def per_object_ps(
-        self, kinds: NDArray[np.uint8], triangles: NDArray[np.int32]
-    ) -> NDArray[np.int64]:
-        """Cost of a test against each object: (N,) int64 picoseconds."""
-        by_kind = np.zeros(4, np.int64)
+    def of_objects(self, workload: Workload, dtype: type = np.int64) -> NDArray[Any]:
+        """Cost of a test against each object, its own where the workload gives one: (N,) ps."""
+        if len(workload.object_test_ps):
+            return workload.object_test_ps.astype(dtype)
+        by_kind: NDArray[Any] = np.zeros(4, dtype)
         by_kind[[SPHERE, CONE, POLYGON, MESH]] = (
             self.sphere_ps,
             self.cone_ps,
             self.polygon_ps,
             self.mesh_ps,
         )
-        beyond_first = np.maximum(triangles.astype(np.int64) - 1, 0)
-        costs: NDArray[np.int64] = by_kind[kinds] + self.per_triangle_ps * beyond_first
-        return costs
-
-    def of_objects(self, workload: Workload) -> NDArray[np.int64]:
-        """Cost of a test against each object, its own where the workload gives one: (N,) int64."""
-        if len(workload.object_test_ps):
-            return workload.object_test_ps
-        return self.per_object_ps(workload.object_kinds, workload.object_triangles)
+        beyond_first = np.maximum(workload.object_triangles.astype(dtype) - 1, 0)
+        return by_kind[workload.object_kinds] + self.per_triangle_ps * beyond_first
 
 
 @dataclass(frozen=True)

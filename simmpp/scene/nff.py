@@ -75,8 +75,6 @@ class _Reader:
             read()
         if self.camera is None:
             words.fail("no view: an NFF file needs one 'v'", at_end=True)
-        if not self.objects:
-            words.fail("no objects: expected at least one of s, c, p, pp", at_end=True)
         return Scene(
             name=name,
             objects=tuple(self.objects),

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.errors import ConfigError
 from simmpp.machine.machine import Machine
+from simmpp.machine.work import total_compute_ps
 from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
@@ -21,9 +20,6 @@ from simmpp.workload.workload import Workload
 
 REFERENCE, CEILING = "object", "replicated"
 """Run with every point: what profits are measured against, and no dataflow at all."""
-
-CLOCK_ENDS_PS = 2**62
-"""The clock is int64 picoseconds; half of it, 53 days, is left to communication and waiting."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,22 +55,6 @@ class PolicyRun:
         return POLICIES[self.parameters.name].all_resident
 
 
-def total_compute_ps(workload: Workload, machine: Machine) -> int:
-    """What one PE alone, with everything in memory, would take."""
-    first_ps = replace(machine.test, per_triangle_ps=0).of_objects(workload)
-    beyond_first = np.maximum(workload.object_triangles - 1, 0)
-    if len(workload.object_test_ps):
-        beyond_first = np.zeros_like(beyond_first)
-    tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
-    # Python's integers: the sum may be beyond the clock, which is what it is checked for
-    total_ps = workload.n_rays * machine.ray_ps
-    for n, cost_ps, more in zip(
-        tests.tolist(), first_ps.tolist(), beyond_first.tolist(), strict=True
-    ):
-        total_ps += n * (cost_ps + more * machine.test.per_triangle_ps)
-    return total_ps
-
-
 def make_point(config: Config, workload: Workload, seed: int | None = None) -> Point:
     """Draw the placement; ``seed`` is the first of the configuration's by default.
 
@@ -84,10 +64,6 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
         raise ConfigError(f"method: value {config.settings.method!r}: expected simulate here")
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
-    if total_compute_ps(workload, machine) > CLOCK_ENDS_PS:
-        raise ConfigError(
-            "machine: expected costs of tests and rays that sum up to less than 53 days"
-        )
     placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
     return Point(config, workload, machine, placement, seed)
 

@@ -167,7 +167,6 @@ def test_mistakes() -> None:
     )
     assert refused("run", "c.yaml", "--picture", "no/p.png").startswith("simmpp: error: --picture:")
     assert refused("run", "c.yaml", "--out", "c.yaml").startswith("simmpp: error: --out:")
-    expected = "expected costs of tests and rays that sum up to less than 53 days"
     slow = (
         "--set",
         "machine.test=10 s",
@@ -176,8 +175,8 @@ def test_mistakes() -> None:
         "--set",
         "processors=1",
     )
-    assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s") == (
-        f"simmpp: error: machine: {expected}"
+    assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s").startswith(
+        "simmpp: error: the simulated time exceeds the clock's"
     )
     assert refused("scene", "tetra:0").startswith("simmpp: error: ")
     assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")

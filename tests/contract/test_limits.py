@@ -1,0 +1,73 @@
+"""Edges of what can be asked for: nothing to do, one PE, more PEs than objects, a full clock."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from builders import random_case
+
+import simmpp
+from simmpp.engine.simulate import ENGINES
+from simmpp.errors import ConfigError
+from simmpp.machine.work import CLOCK_LIMIT_PS
+from simmpp.policy.table import POLICIES
+from simmpp.scene.scene import Camera, Scene
+
+PICTURE = simmpp.Picture(resolution=4)
+EMPTY = Scene("empty", (), (), (), Camera(eye=(0, 0, -5), at=(0, 0, 0), up=(0, 1, 0)))
+
+
+def run(
+    scene: Scene, processors: int, fraction: Fraction, policy: str, engine: str
+) -> simmpp.Result:
+    workload = simmpp.trace(scene, PICTURE)
+    memory = simmpp.Memory(fraction=fraction)
+    placement = simmpp.place(workload, processors, memory, simmpp.PlacementRules(), 0)
+    machine = simmpp.make_machine(processors=processors)
+    return simmpp.simulate(
+        workload, machine, placement, simmpp.PolicyParameters(policy), engine=engine
+    )
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("policy", POLICIES)
+def test_an_empty_scene_costs_its_rays(policy: str, engine: str) -> None:
+    result = run(EMPTY, 4, Fraction(1, 2), policy, engine)
+    assert (result.rays, result.tests, result.messages) == (16, 0, 0)
+    assert result.makespan_ps == 4 * 6_000_000
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("policy", POLICIES)
+def test_one_processor_needs_no_messages(policy: str, engine: str) -> None:
+    result = run(simmpp.load_scene("tetra:2"), 1, Fraction(0), policy, engine)
+    assert result.messages == 0
+    assert result.makespan_ps == result.compute_ps.sum()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("policy", POLICIES)
+@pytest.mark.parametrize("fraction", [Fraction(0), Fraction(1)])
+def test_more_processors_than_objects_and_pixels(
+    fraction: Fraction, policy: str, engine: str
+) -> None:
+    scene = simmpp.load_scene("tetra:1")
+    result = run(scene, 37, fraction, policy, engine)
+    alone = run(scene, 1, Fraction(1), policy, engine)
+    assert (result.rays, result.tests) == (alone.rays, alone.tests)
+    assert result.compute_ps.sum() == alone.makespan_ps
+    assert (result.messages == 0) == (fraction == 1 or policy == "replicated")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_full_clock_is_an_error_and_never_wraps(engine: str) -> None:
+    case = next(c for c in map(random_case, range(1000)) if c.workload.n_rays > 20)
+    run_case = (case.workload, case.machine, case.placement, simmpp.PolicyParameters("object"))
+    assert simmpp.simulate(*run_case, engine=engine).makespan_ps < CLOCK_LIMIT_PS
+    computing = replace(case.machine, ray_ps=CLOCK_LIMIT_PS // 20)
+    waiting = replace(case.machine, latency_ps=CLOCK_LIMIT_PS)
+    for machine in (computing, waiting):
+        with pytest.raises(ConfigError, match="exceeds the clock"):
+            simmpp.simulate(case.workload, machine, *run_case[2:], engine=engine)
