@@ -14,6 +14,9 @@ from simmpp.workload.picture import Picture
 
 Floats = NDArray[np.float64]
 
+FAR = 1e100
+"""Distance in scene sizes beyond which squares might overflow."""
+
 
 def primary_rays(camera: Camera, picture: Picture, frame: Frame) -> tuple[Floats, Floats]:
     """Origin (3,) and directions (rows * columns, 3) float64 of length 1, normalised.
@@ -30,23 +33,26 @@ def primary_rays(camera: Camera, picture: Picture, frame: Frame) -> tuple[Floats
     across = (reach * steps)[None, :, None] * right
     down = (reach * -steps)[:, None, None] * up
     directions = (forward + down + across).reshape(-1, 3)
-    return frame.points(np.array(camera.eye)), directions / _lengths(directions)
+    return frame.points(np.array(camera.eye)), _unit(directions)
 
 
 def _basis(camera: Camera, frame: Frame) -> tuple[Floats, Floats, Floats]:
     eye, at = frame.points(np.array([camera.eye, camera.at]))
-    forward = at - eye
-    right = np.cross(forward, np.array(camera.up, dtype=np.float64))
-    if not (np.isfinite(eye).all() and np.isfinite(right).all()):
-        raise SceneError(f"the camera's from, at and up must be finite, got {camera}")
-    if not forward.any():
+    up = np.array(camera.up, dtype=np.float64)
+    if not (np.abs([eye, at, up]) < FAR).all():
+        raise SceneError(f"the camera is not finite, or too far away: {camera}")
+    if (eye == at).all():
         raise SceneError(f"the camera looks from a point at itself: {camera.eye}")
-    forward = forward / _lengths(forward)
-    right = np.cross(forward, np.array(camera.up, dtype=np.float64))
-    if not _lengths(right)[0] > 1e-12 * _lengths(np.array(camera.up, dtype=np.float64))[0]:
+    forward = _unit(at - eye)
+    right = np.cross(forward, up)
+    if not _lengths(right)[0] > 1e-12 * _lengths(up)[0]:
         raise SceneError(f"the camera's up {camera.up} is parallel to the view, or zero")
-    right = right / _lengths(right)
+    right = _unit(right)
     return forward, right, np.cross(right, forward)
+
+
+def _unit(vectors: Floats) -> Floats:
+    return vectors / _lengths(vectors)
 
 
 def _lengths(vectors: Floats) -> Floats:

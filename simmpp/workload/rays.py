@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from simmpp.compiled import njit, njit_reading
 from simmpp.errors import SceneError
 from simmpp.scene.scene import Scene, Vector
-from simmpp.workload.camera import primary_rays
+from simmpp.workload.camera import FAR, primary_rays
 from simmpp.workload.candidates import work_for
 from simmpp.workload.exact import ray_of
 from simmpp.workload.geometry import Geometry
@@ -35,8 +35,6 @@ from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-FAR = 1e100
-"""Distance in scene sizes beyond which squares might overflow."""
 New = tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints]
 
 
