@@ -135,8 +135,9 @@ def _shade(
         colours[start + i] = AMBIENT * material[3] * material[:3]
         if as_recorded[start + i]:
             ray = ray_of(rays.origins, rays.directions, i)
+            opaque = not geometry.transmits[hit]
             surface = surface_at(
-                geometry.shapes, geometry.normals, hit, ray, distances[i], False, work
+                geometry.shapes, geometry.normals, hit, ray, distances[i], opaque, work
             )
             mirror = reflected(ray, surface)
             _light(lighting, material, surface, mirror, hits, shadows[i], colours[start + i])
@@ -163,8 +164,10 @@ def _light(
         if lighting.shadows and hits[shadow - 1] >= 0:
             continue
         x, y, z = normalised(x, y, z)
-        diffuse = kd * (surface.nx * x + surface.ny * y + surface.nz * z)
-        highlight = ks * max(0.0, mirror[0] * x + mirror[1] * y + mirror[2] * z) ** shine
+        diffuse = kd * (surface.lx * x + surface.ly * y + surface.lz * z)
+        along = mirror[0] * x + mirror[1] * y + mirror[2] * z
+        before = surface.nx * x + surface.ny * y + surface.nz * z > 0.0
+        highlight = ks * along**shine if before and along > 0.0 else 0.0
         for c in range(3):
             colour[c] += lighting.colours[k, c] * (diffuse * material[c] + highlight)
 

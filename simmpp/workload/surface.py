@@ -29,6 +29,10 @@ class Surface(NamedTuple):
     ny: float
     nz: float
     """The normal on the side of the ray."""
+    lx: float
+    ly: float
+    lz: float
+    """The normal on the side that light falls on: the ray's, but glass is lit from outside."""
     entering: bool
     """The ray comes from outside."""
     flat: bool
@@ -59,8 +63,15 @@ def surface_at(
         nx, ny, nz = normalised(nx, ny, nz)
     entering = nx * ray.dx + ny * ray.dy + nz * ray.dz <= 0.0
     side = 1.0 if entering else -1.0
+    lit = side if opaque else 1.0
     flat, convex = opaque and kind == POLYGON, opaque and kind <= CONE
-    return Surface(x, y, z, nx, ny, nz, side * nx, side * ny, side * nz, entering, flat, convex)
+    return Surface(
+        x, y, z,
+        nx, ny, nz,
+        side * nx, side * ny, side * nz,
+        lit * nx, lit * ny, lit * nz,
+        entering, flat, convex,
+    )  # fmt: skip
 
 
 @njit_reading
@@ -91,8 +102,11 @@ def towards(surface: Surface, x: float, y: float, z: float) -> Vector:
 
 @njit_reading
 def faces(surface: Surface, x: float, y: float, z: float) -> bool:
-    """Whether the side that the ray has hit faces a light in that direction."""
-    return surface.nx * x + surface.ny * y + surface.nz * z > 0.0
+    """Whether the surface faces a light in that direction.
+
+    Inside glass that is its outside: from the inside, the glass itself would block every light.
+    """
+    return surface.lx * x + surface.ly * y + surface.lz * z > 0.0
 
 
 @njit_reading

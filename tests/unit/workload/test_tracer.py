@@ -125,6 +125,17 @@ def test_total_reflection_spawns_no_refracted_ray() -> None:
     assert wider[REFRACTED] < wider[REFLECTED] == 256
 
 
+@pytest.mark.parametrize("material, shadows", [(GLASS, True), (DULL, False)])
+def test_glass_is_lit_from_outside_and_what_is_opaque_on_the_side_that_is_seen(material, shadows):
+    """An eye inside a sphere, a lamp outside: only light on the outside of glass arrives."""
+    inside = scene(Sphere((0.0, 0.0, 0.0), 2.0), materials=(material,), eye=(0.0, -1.0, 0.0))
+    lamp = dataclasses.replace(inside, lights=(Light((0.0, 90.0, 0.0)),))
+    workload = trace(lamp, Picture(resolution=8, max_depth=1))
+    of_shadows = workload.kinds == SHADOW
+    assert of_shadows.sum() == (64 if shadows else 0)
+    assert (workload.hits[of_shadows] == -1).all()
+
+
 def test_an_empty_scene() -> None:
     workload = trace(scene(), SMALL)
     check(workload, "traced")
