@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 
 import click
 
+from simmpp.commands.check import check_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
@@ -56,6 +57,7 @@ def main() -> None:
 
 main.add_command(run_command)
 main.add_command(sweep_command)
+main.add_command(check_command)
 main.add_command(machine_command)
 main.add_command(scene_command)
 main.add_command(workload_command)
