@@ -8,16 +8,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from simmpp.compiled import source_digest
 from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.picture import Picture
 
-WORKLOAD_VERSION = 2
-"""Grows with every change of the algorithm that can change a workload."""
-
-
 def digest_of(scene: Scene, picture: Picture) -> str:
-    """Hexadecimal SHA-256 of geometry, lights, camera, picture and algorithm.
+    """Hexadecimal SHA-256 of geometry, lights, camera, picture and the source of the tracer.
 
     Of a material only what spawns rays counts; names, colours and the background do not.
     """
@@ -29,7 +26,7 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
-    yield repr((WORKLOAD_VERSION, dataclasses.astuple(picture))).encode()
+    yield repr((source_digest("simmpp.workload.tracer"), dataclasses.astuple(picture))).encode()
     camera = scene.camera
     yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
