@@ -13,6 +13,7 @@ from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.picture import Picture
 
+
 def digest_of(scene: Scene, picture: Picture) -> str:
     """Hexadecimal SHA-256 of geometry, lights, camera, picture and the source of the tracer.
 
