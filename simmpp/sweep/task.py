@@ -36,14 +36,14 @@ def task_of(point: GridPoint, digest: str) -> Task:
     """
     config, policy = point.config, canonical(point.policy)
     everywhere = POLICIES[policy.name].all_resident
-    memory = Memory() if everywhere else _canonical(config.memory)
+    memory = {} if everywhere else asdict(_canonical(config.memory))  # {}: unlike any fraction's
     rules = config.placement_rules
     if everywhere:
         rules = PlacementRules(pixels=rules.pixels)
     machine = asdict(config.machine_for(config.processors))
     for label in ("name", "sources"):
         del machine[label]
-    place = _hash(digest, machine, asdict(memory), asdict(rules), point.seed)
+    place = _hash(digest, machine, memory, asdict(rules), point.seed)
     settings = config.settings
     return Task(
         key=_hash(place, asdict(policy), settings.ready_order, settings.method, settings.engine),
