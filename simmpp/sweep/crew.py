@@ -7,8 +7,10 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
+from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
@@ -24,6 +26,9 @@ CONNECT_S, WORKERS_S = 10, 60
 
 class Crew:
     """Anything with the interface of ``concurrent.futures.Executor``."""
+
+    is_elsewhere = False
+    """Workers may have other versions installed than this process."""
 
     def __init__(self, executor: Executor, most_in_flight: int) -> None:
         self.executor = executor
@@ -61,9 +66,9 @@ class Processes(Crew):
         self.executor, self._leash = _pool(self._workers)
 
     def close(self) -> None:
-        """Workers end when the leash does."""
+        """Workers end when the leash does, those that are only starting included."""
         self._leash.close()
-        super().close()
+        self.executor.shutdown(wait=True, cancel_futures=True)
 
 
 def _pool(workers: int) -> tuple[Executor, Connection]:
@@ -72,9 +77,31 @@ def _pool(workers: int) -> tuple[Executor, Connection]:
     context: Any = multiprocessing.get_context(method)
     if method == "forkserver":
         context.set_forkserver_preload(["simmpp.sweep.worker"])
+        with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
+            forkserver.ensure_running()
     held, leash = context.Pipe(duplex=False)
-    arguments = (held, str(cache_folder()))
-    return ProcessPoolExecutor(workers, context, _begin, arguments), leash
+    pool = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
+    interrupts: list[int] = []
+    with _sigint(lambda number, frame: interrupts.append(number)):  # half a process is untidy
+        wait([pool.submit(os.getpid) for _ in range(workers)])
+    if interrupts:
+        leash.close()
+        pool.shutdown()
+        raise KeyboardInterrupt
+    return pool, leash
+
+
+@contextmanager
+def _sigint(handler: Any) -> Iterator[None]:
+    """Another answer to Ctrl-C, where there is one: in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _begin(held: Connection, cache: str) -> None:
@@ -94,6 +121,8 @@ def _end_with(held: Connection) -> None:
 class Cluster(Crew):
     """The workers of a Dask scheduler, which gives the tasks of a dead worker to others itself."""
 
+    is_elsewhere = True
+
     def __init__(self, address: str) -> None:
         try:
             from distributed import Client
@@ -112,7 +141,7 @@ class Cluster(Crew):
 
     def close(self) -> None:
         """Leave the cluster as it was."""
-        super().close()
+        self.executor.shutdown(wait=False)  # cancels what is in flight
         self._client.close()
 
 

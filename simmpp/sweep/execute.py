@@ -51,7 +51,8 @@ def outcomes(tasks: Iterable[Task], crew: Crew, timeout_s: float | None) -> Iter
 def _submit(crew: Crew, task: Task, timeout_s: float | None) -> Future[Outcome]:
     """Give a task out; to a broken executor it is lost like those already in flight."""
     try:
-        return crew.executor.submit(run_task, task, timeout_s, result_versions())
+        versions = result_versions() if crew.is_elsewhere else None
+        return crew.executor.submit(run_task, task, timeout_s, versions)
     except BrokenExecutor as error:
         future: Future[Outcome] = Future()
         future.set_exception(error)

@@ -16,6 +16,7 @@ from simmpp.sweep.point import Point, make_point
 from simmpp.sweep.provenance import difference, result_versions
 from simmpp.sweep.rows import integers
 from simmpp.sweep.task import Task
+from simmpp.sweep.warm import warm_up
 from simmpp.sweep.workloads import shared_workload
 from simmpp.workload.workload import Workload
 
@@ -51,13 +52,15 @@ def keep_workload(workload: Workload) -> None:
     _workloads.get(workload.digest, lambda: workload)
 
 
-def run_task(task: Task, timeout_s: float | None, versions: Mapping[str, str]) -> Outcome:
+def run_task(task: Task, timeout_s: float | None, versions: Mapping[str, str] | None) -> Outcome:
     """Simulate; whatever goes wrong becomes the outcome's error, so that the sweep goes on.
 
-    ``versions`` are those of who asks: results of others must not be mixed with them.
+    ``versions`` are those of who asks, if they may differ: results must not be mixed then.
     """
     try:
-        return _simulated(task, timeout_s, versions)
+        if versions is not None:
+            _compare(versions)
+        return _simulated(task, timeout_s)
     except SimmppError as error:
         problem = str(error)
     except MemoryError:
@@ -67,9 +70,14 @@ def run_task(task: Task, timeout_s: float | None, versions: Mapping[str, str]) -
     return Outcome(task.key, error=" ".join(problem.split()))
 
 
-def _simulated(task: Task, timeout_s: float | None, versions: Mapping[str, str]) -> Outcome:
-    if problem := difference(versions, result_versions(), "the sweep", "the worker"):
-        raise SimmppError(f"other versions: {problem}")
+def _compare(versions: Mapping[str, str]) -> None:
+    if problem := difference(versions, result_versions(), "for the sweep", "for the worker"):
+        raise SimmppError(f"the worker has other versions: {problem}")
+
+
+def _simulated(task: Task, timeout_s: float | None) -> Outcome:
+    settings = task.config.settings
+    warm_up(settings.engine)
     workload = _workloads.get(task.digest, lambda: shared_workload(task.config, task.digest))
     point, placing_s = _points.get(task.placement_key, lambda: _placed(task, workload))
     began_s = time.perf_counter()
@@ -79,7 +87,6 @@ def _simulated(task: Task, timeout_s: float | None, versions: Mapping[str, str])
             raise TimedOut(f"timeout: not finished after {timeout_s:g} s")
 
     stop_in_time(workload.n_rays)
-    settings = task.config.settings
     result = simulate(
         workload,
         point.machine,
