@@ -90,6 +90,17 @@ def test_a_damaged_file_is_noticed_and_made_again(cache, damage) -> None:
     assert same(load(path), first)
 
 
+def test_a_sound_archive_of_changed_arrays_is_noticed(tmp_path) -> None:
+    path = tmp_path / "one.npz"
+    save(workload_for(SCENE, PICTURE), path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    arrays["hit_distances"] *= 2
+    np.savez(path, **arrays)
+    with pytest.raises(WorkloadError, match="checksum"):
+        load(path)
+
+
 @pytest.mark.parametrize("position", range(0, 100, 3))
 def test_every_flipped_byte_of_the_arrays_is_noticed(tmp_path, position) -> None:
     path = tmp_path / "one.npz"

@@ -20,6 +20,7 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.tracer import trace
 from simmpp.workload.workload import REFLECTED, REFRACTED, SHADOW, Workload
 
+FLOOR = [[-9.0, -9, -2], [9, -9, -2], [9, 9, -2], [-9, 9, -2]]
 SMALL = Picture(resolution=24)
 GLASS = Material(ks=0.1, transmittance=0.9, ior=1.5)
 MIRROR = Material(ks=0.5)
@@ -65,7 +66,19 @@ class Liar(Intersector):
         return self._stands_for[self.rng.integers(len(self._stands_for), size=len(origins))]
 
 
-@pytest.mark.parametrize("witness", [Silent, Moved, Liar])
+class Forger(Intersector):
+    """Proposes rows that belong to other objects, or are no triangles: bounds of no hit at all."""
+
+    def __init__(self, geometry):
+        super().__init__(geometry)
+        self.rng = np.random.default_rng(0)
+        self.limits = len(geometry.kinds), len(geometry.shapes.surfaces)
+
+    def claims(self, origins, directions):
+        return self.rng.integers(0, self.limits, (len(origins), 2)).astype(np.int32)
+
+
+@pytest.mark.parametrize("witness", [Silent, Moved, Liar, Forger])
 @pytest.mark.parametrize("name", ["mountain:3", "rings:1", "balls:2", "gears:1"])
 def test_the_workload_is_the_same_whatever_embree_proposes(name, witness) -> None:
     honest = trace(load_scene(name), SMALL)
@@ -74,7 +87,7 @@ def test_the_workload_is_the_same_whatever_embree_proposes(name, witness) -> Non
 
 def test_rays_are_numbered_generation_by_generation() -> None:
     glass = Sphere((0.0, 0.0, 0.0), 1.0, 1)
-    floor = Polygon(np.array([[-9.0, -9, -2], [9, -9, -2], [9, 9, -2], [-9, 9, -2]]), material=0)
+    floor = Polygon(np.array(FLOOR))
     lights = (Light((0.0, -9.0, 9.0)), Light((5.0, -5.0, 5.0)))
     workload = trace(scene(glass, floor, materials=(DULL, GLASS), lights=lights), SMALL)
     check(workload, "traced")
@@ -134,6 +147,18 @@ def test_glass_is_lit_from_outside_and_what_is_opaque_on_the_side_that_is_seen(m
     of_shadows = workload.kinds == SHADOW
     assert of_shadows.sum() == (64 if shadows else 0)
     assert (workload.hits[of_shadows] == -1).all()
+
+
+def test_what_is_convex_and_opaque_is_not_tested_by_rays_that_leave_it() -> None:
+    ball, floor = Sphere((0.0, 0.0, 0.0), 1.0), Polygon(np.array(FLOOR))
+    for material, left_out in ((MIRROR, True), (GLASS, False)):
+        workload = trace(
+            scene(ball, floor, materials=(material,)), Picture(resolution=8, max_depth=2)
+        )
+        for ray in range(workload.n_primaries, workload.n_rays):
+            source = workload.hits[workload.parents[ray]]
+            tests = slice(*workload.itinerary_offsets[ray : ray + 2])
+            assert (source in workload.itinerary_objects[tests]) != left_out
 
 
 def test_an_empty_scene() -> None:
