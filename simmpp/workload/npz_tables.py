@@ -17,9 +17,10 @@ ITINERARIES = ("itinerary_offsets", "itinerary_objects")
 def read(path: Path) -> Tables:
     """Both tables; raises WorkloadError or whatever numpy and zipfile raise for a bad file."""
     where = str(path)
-    with np.load(path, allow_pickle=False) as file:
-        if not isinstance(file, np.lib.npyio.NpzFile):
-            raise WorkloadError("expected an npz of several arrays, found one array", where=where)
+    file = np.load(path, allow_pickle=False)
+    if not isinstance(file, np.lib.npyio.NpzFile):
+        raise WorkloadError("expected an npz of several arrays, found one array", where=where)
+    with file:
         arrays: dict[str, Column] = {name: file[name] for name in file.files}
     for name, array in arrays.items():
         if array.ndim != 1:
