@@ -1,0 +1,245 @@
+"""A sweep gives the same rows whoever runs it, in whatever order, however often it was stopped."""
+
+import dataclasses
+import json
+import random
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+import pandas
+import pytest
+from click.testing import CliRunner
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from simmpp.cli import main
+from simmpp.compiled import cache_folder
+from simmpp.errors import ConfigError, ModelError
+from simmpp.sweep import plan as planning
+from simmpp.sweep import worker
+from simmpp.sweep.config import config_from_mapping
+from simmpp.sweep.crew import Crew
+from simmpp.sweep.execute import outcomes
+from simmpp.sweep.outcome import Outcome
+from simmpp.sweep.plan import Plan, plan
+from simmpp.sweep.rows import result_columns
+from simmpp.sweep.sweep import run_sweep
+
+CONFIG = {
+    "scene": "tetra:2",
+    "picture": {"resolution": 12},
+    "seeds": [0, 1],
+    "policy": ["ray", "concurrent"],
+    "sweep": {"processors": [1, 4], "memory.fraction": [0.3, 1]},
+}
+TABLES = ("results.csv", "results.parquet", "profits.csv", "run.json")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A fresh cache of workloads; compiled code stays where it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("NUMBA_CACHE_DIR", str(cache_folder() / "compiled"))
+        folder = tmp_path_factory.mktemp("cache")
+        patch.setenv("SIMMPP_CACHE", str(folder))
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def made(cache: Path) -> Plan:
+    return plan(config_from_mapping(CONFIG))
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> dict[str, bytes]:
+    """The tables as one process writes them."""
+    return tables(tmp_path_factory.mktemp("expected"))
+
+
+def tables(out: Path, **options: object) -> dict[str, bytes]:
+    run_sweep(CONFIG, out=out, **options)  # type: ignore[arg-type]
+    return {name: (out / name).read_bytes() for name in TABLES}
+
+
+def test_columns_and_order(expected: dict[str, bytes], tmp_path: Path) -> None:
+    (tmp_path / "r.csv").write_bytes(expected["results.csv"])
+    rows = pandas.read_csv(tmp_path / "r.csv")
+    assert tuple(rows.columns) == result_columns()
+    assert len(rows) == 2 * 2 * 3 * 2
+    keys = ["scene", "processors", "fraction", "effective_fraction", "policy", "seed"]
+    assert rows[keys].equals(rows[keys].sort_values(keys, ignore_index=True))
+    assert set(rows["engine"]) == {"compiled"}
+
+
+def test_any_number_of_workers_writes_the_same(expected: dict[str, bytes], tmp_path: Path) -> None:
+    assert tables(tmp_path, workers=2) == expected
+
+
+def test_both_engines_write_the_same(expected: dict[str, bytes], tmp_path: Path) -> None:
+    found = tables(tmp_path, engine="simpy")
+    assert found["profits.csv"] == expected["profits.csv"]
+    other = expected["results.csv"].replace(b",simulate,compiled,", b",simulate,simpy,")
+    assert found["results.csv"] == other != expected["results.csv"]
+
+
+@settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.randoms(use_true_random=False))
+def test_the_order_of_tasks_is_irrelevant(made: Plan, shuffled: random.Random) -> None:
+    tasks = made.tasks
+    in_order = {o.key: o for o in outcomes(tasks, Crew(ThreadPoolExecutor(1), 1), None)}
+    shuffled.shuffle(tasks)
+    found = {o.key: o for o in outcomes(tasks, Crew(ThreadPoolExecutor(3), 5), None)}
+    assert made.rows(found) == made.rows(in_order)
+
+
+def test_python_gets_the_tables(expected: dict[str, bytes], tmp_path: Path) -> None:
+    result = run_sweep(CONFIG)
+    (tmp_path / "r.parquet").write_bytes(expected["results.parquet"])
+    assert result.rows.equals(pandas.read_parquet(tmp_path / "r.parquet"))
+    (tmp_path / "p.csv").write_bytes(expected["profits.csv"])
+    pandas.testing.assert_frame_equal(
+        result.profits, pandas.read_csv(tmp_path / "p.csv"), check_dtype=False
+    )
+
+
+def test_speedup_is_against_one_pe_with_everything() -> None:
+    """T(1) is known without simulating: it is what one replicated PE takes."""
+    one = {**CONFIG, "policy": "replicated", "seeds": [0], "sweep": {"processors": [1, 4]}}
+    rows, profits = run_sweep(one)
+    alone = rows[(rows["policy"] == "replicated") & (rows["processors"] == 1)]
+    t1_ps = alone["makespan_ps"].item()
+    for profit in profits.to_dict("records"):
+        run = rows[
+            (rows["policy"] == profit["policy"]) & (rows["processors"] == profit["processors"])
+        ]
+        assert profit["speedup"] == t1_ps / run["makespan_ps"].item()
+        assert profit["efficiency"] == profit["speedup"] / profit["processors"]
+
+
+def test_it_continues_from_any_part_of_its_journal(
+    expected: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tables(tmp_path)
+    journal = (tmp_path / "points.jsonl").read_bytes()
+    ran: list[str] = []
+    real = worker._simulated
+    monkeypatch.setattr(worker, "_simulated", lambda task, t: ran.append(task.key) or real(task, t))
+    for length in (0, 10, len(journal) // 2, len(journal) - 1, len(journal)):
+        (tmp_path / "points.jsonl").write_bytes(journal[:length])
+        ran.clear()
+        assert tables(tmp_path) == expected
+        finished = max(0, journal[:length].count(b'"numbers"') - (length < len(journal)))
+        assert len(ran) <= json.loads(expected["run.json"])["simulations"] - finished
+    assert ran == []
+
+
+def test_other_settings_are_refused(tmp_path: Path) -> None:
+    tables(tmp_path)
+    config = {**CONFIG, "machine": {"latency": "1 ms"}}
+    with pytest.raises(
+        ConfigError, match=r"config.machine.latency is not given there, 10\*\*9|1000"
+    ):
+        run_sweep(config, out=tmp_path)
+    with pytest.raises(ConfigError, match=r"config\.engine is compiled there, simpy now"):
+        run_sweep(CONFIG, out=tmp_path, engine="simpy")
+
+
+def test_other_versions_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables(tmp_path)
+    other = {**planning.result_versions(), "numpy": "1.0"}
+    monkeypatch.setattr(planning, "result_versions", lambda: other)
+    with pytest.raises(ConfigError, match=r"versions.numpy is .* there, 1.0 now"):
+        run_sweep(CONFIG, out=tmp_path)
+
+
+def test_a_failed_point_is_a_row_and_is_run_again(
+    expected: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def starving(workload, machine, placement, policy, **options):  # type: ignore[no-untyped-def]
+        if policy.name == "ray" and machine.processors == 4:
+            raise ModelError("ray 3 waits\nfor ever")
+        return simulate(workload, machine, placement, policy, **options)
+
+    Path(tmp_path / "c.yaml").write_text(json.dumps(CONFIG))
+    arguments = ["sweep", str(tmp_path / "c.yaml"), "--workers", "1", "--out", str(tmp_path / "o")]
+    simulate = worker.simulate
+    monkeypatch.setattr(worker, "simulate", starving)
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 1
+    assert "24 rows, 4 failed" in done.stdout
+    assert "4 failed: ray 3 waits for ever" in done.stderr
+    rows = pandas.read_csv(tmp_path / "o" / "results.csv")
+    failed = rows[rows["error"].notna()]
+    assert len(rows) == 24
+    assert set(failed["error"]) == {"ray 3 waits for ever"}
+    assert failed["makespan_ps"].isna().all()
+    profits = pandas.read_csv(tmp_path / "o" / "profits.csv")
+    assert set(profits[profits["n"] == 0]["policy"]) == {"ray"}
+    monkeypatch.undo()
+    assert CliRunner().invoke(main, arguments).exit_code == 0
+    assert (tmp_path / "o" / "results.csv").read_bytes() == expected["results.csv"]
+
+
+@pytest.mark.parametrize("error", [MemoryError(), RuntimeError("a\nb"), ModelError("x")])
+def test_whatever_goes_wrong_is_one_line(
+    made: Plan, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    def fails(*arguments: object) -> None:
+        raise error
+
+    monkeypatch.setattr(worker, "_simulated", fails)
+    outcome = worker.run_task(made.tasks[0], None, None)
+    assert outcome.error in {"out of memory", "RuntimeError: a b", "x"}
+
+
+def test_a_point_that_takes_too_long_fails() -> None:
+    rows, _ = run_sweep(CONFIG, timeout_s=1e-9)
+    assert set(rows["error"]) == {"timeout: not finished after 1e-09 s"}
+
+
+def test_a_worker_with_other_versions_is_refused(made: Plan) -> None:
+    outcome = worker.run_task(made.tasks[0], None, {**planning.result_versions(), "numpy": "1.0"})
+    assert outcome.error.startswith("the worker has other versions: numpy is 1.0 for the sweep, ")
+
+
+class Fragile(Executor):
+    """A pool that breaks, with all that is in flight, when it is given one of some tasks."""
+
+    def __init__(self, deadly: set[str]) -> None:
+        self.deadly, self.flying, self.broken = deadly, list[Future[Outcome]](), False
+
+    def submit(self, fn, task, *arguments):  # type: ignore[no-untyped-def]
+        if self.broken:
+            raise BrokenProcessPool
+        future: Future[Outcome] = Future()
+        self.flying.append(future)
+        if task.key in self.deadly:
+            self.broken = True
+            for each in self.flying:
+                if not each.done():
+                    each.set_exception(BrokenProcessPool())
+        elif len(self.flying) % 3 == 0:
+            future.set_result(Outcome(task.key, {"messages": 1}))
+        else:
+            future.set_result(Outcome(task.key))
+        return future
+
+
+class Renewing(Crew):
+    def renew(self) -> None:
+        assert isinstance(self.executor, Fragile)
+        self.executor = Fragile(self.executor.deadly)
+
+
+@given(st.sets(st.integers(0, 11), max_size=4), st.integers(1, 6))
+def test_only_the_task_that_kills_its_worker_fails(numbers: set[int], in_flight: int) -> None:
+    tasks = [dataclasses.replace(SOME_TASK, key=str(n)) for n in range(12)]
+    deadly = {str(n) for n in numbers}
+    found = list(outcomes(tasks, Renewing(Fragile(deadly), in_flight), None))
+    assert sorted(o.key for o in found) == sorted(task.key for task in tasks)
+    assert {o.key for o in found if o.error} == deadly
+
+
+SOME_TASK = planning.Task("", "", "", config_from_mapping(CONFIG), None, 0)  # type: ignore[arg-type]

@@ -1,0 +1,118 @@
+"""``kill -9`` at any moment of a sweep, then the same command again: byte-identical tables.
+
+``SIMMPP_KILLS=20`` kills at more random moments than CI has time for, ``SIMMPP_KILLS_SEED`` chooses
+others.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from simmpp.compiled import cache_folder
+from simmpp.sweep.journal import FILE
+from simmpp.sweep.sweep import run_sweep
+
+KILLS = int(os.environ.get("SIMMPP_KILLS", "3"))
+SEED = int(os.environ.get("SIMMPP_KILLS_SEED", "0"))
+TABLES = ("results.csv", "results.parquet", "profits.csv", "run.json")
+CONFIG = """
+scene: mountain:4
+picture: {resolution: 128}
+seeds: [0, 1, 2]
+sweep:
+  processors: [8, 32]
+  memory.fraction: [0.1, 0.4, 1]
+  policy: [object, ray, concurrent]
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Where the configuration and a cache of workloads are; compiled code stays where it is."""
+    folder = tmp_path_factory.mktemp("killed")
+    (folder / "c.yaml").write_text(CONFIG)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("NUMBA_CACHE_DIR", str(cache_folder() / "compiled"))
+        patch.setenv("SIMMPP_CACHE", str(folder / "cache"))
+        yield folder
+
+
+def begin(folder: Path, out: Path) -> subprocess.Popen[bytes]:
+    """A sweep of two workers that has begun its journal."""
+    command = [sys.executable, "-c", "from simmpp.cli import main; main()", "sweep", "c.yaml"]
+    command += ["--workers", "2", "--out", str(out)]
+    with open(out.with_suffix(".log"), "wb") as log:
+        sweep = subprocess.Popen(
+            command, cwd=folder, stdout=log, stderr=log, start_new_session=True
+        )
+    while not (out / FILE).exists():
+        assert sweep.poll() is None, out.with_suffix(".log").read_text()
+        time.sleep(0.01)
+    return sweep
+
+
+def tables(folder: Path, out: Path) -> dict[str, bytes]:
+    """The tables after the sweep has run to its end."""
+    run_sweep(folder / "c.yaml", out=out)
+    return {name: (out / name).read_bytes() for name in TABLES}
+
+
+@pytest.fixture(scope="module")
+def expected(folder: Path) -> dict[str, bytes]:
+    return tables(folder, folder / "whole")
+
+
+@pytest.fixture(scope="module")
+def lasts_s(folder: Path, expected: dict[str, bytes]) -> float:
+    """Seconds from the first line of the journal to the end."""
+    sweep = begin(folder, folder / "timed")
+    began_s = time.monotonic()
+    assert sweep.wait() == 0
+    assert tables(folder, folder / "timed") == expected
+    return time.monotonic() - began_s
+
+
+@pytest.mark.parametrize("number", range(KILLS))
+def test_killed_and_continued(
+    folder: Path, expected: dict[str, bytes], lasts_s: float, number: int
+) -> None:
+    out = folder / f"killed-{number}"
+    sweep = begin(folder, out)
+    time.sleep(random.Random(f"{SEED} {number}").uniform(0, lasts_s))
+    sweep.kill()
+    sweep.wait()
+    for _ in range(200):
+        if not running(sweep.pid):
+            break
+        time.sleep(0.05)
+    assert not running(sweep.pid), "workers outlive the sweep"
+    assert tables(folder, out) == expected
+
+
+def running(session: int) -> bool:
+    """Whether processes of the session are left."""
+    found = subprocess.run(
+        ["ps", "-s", str(session), "-o", "stat="], capture_output=True, text=True
+    )
+    return any(not line.startswith("Z") for line in found.stdout.split())
+
+
+def test_ctrl_c_writes_what_is_finished(folder: Path, expected: dict[str, bytes]) -> None:
+    out = folder / "interrupted"
+    sweep = begin(folder, out)
+    while (out / FILE).read_bytes().count(b"\n") < 4:
+        time.sleep(0.01)
+    os.killpg(sweep.pid, signal.SIGINT)
+    assert sweep.wait() == 130
+    log = out.with_suffix(".log").read_text()
+    assert log.splitlines()[-1] == "simmpp: interrupted"
+    assert "Traceback" not in log
+    assert 3 < len((out / "results.csv").read_text().splitlines()) < 55
+    assert tables(folder, out) == expected

@@ -1,0 +1,172 @@
+"""Which points a configuration asks for, and which of them are one simulation."""
+
+import re
+from itertools import pairwise
+
+import pytest
+
+from simmpp.errors import ConfigError
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.sweep.axes import axes_of
+from simmpp.sweep.config import config_from_mapping
+from simmpp.sweep.grid import GridPoint, further_columns, grid
+from simmpp.sweep.plan import plan
+from simmpp.sweep.task import canonical
+
+BASE = {"scene": "tetra:1", "picture": {"resolution": 4}, "policy": "ray"}
+
+
+def points(sweep: dict[str, object], **more: object) -> list[GridPoint]:
+    return grid(config_from_mapping({**BASE, "sweep": sweep, **more}))
+
+
+def named(found: list[GridPoint]) -> list[tuple[object, ...]]:
+    return [
+        (p.config.processors, float(p.config.memory.fraction), p.policy.title, p.seed)
+        for p in found
+        if p.policy.title != "object"
+    ]
+
+
+def test_axes_are_multiplied() -> None:
+    found = points({"processors": [1, 2], "memory.fraction": [0.5, "20%"]}, seeds=[3, 4])
+    assert sorted(named(found)) == [
+        (nb, x, "ray", seed) for nb in (1, 2) for x in (0.2, 0.5) for seed in (3, 4)
+    ]
+    assert {p.policy.title for p in found} == {"object", "ray"}
+    assert len(found) == 16
+
+
+def test_without_a_sweep_there_is_one_point() -> None:
+    assert named(points({})) == [(64, 0.1, "ray", 0)]
+
+
+def test_linked_keys_change_together() -> None:
+    found = points({"processors, memory.fraction": [[1, 0.5], [2, 0.25]]})
+    assert named(found) == [(1, 0.5, "ray", 0), (2, 0.25, "ray", 0)]
+
+
+def test_named_points_have_a_column() -> None:
+    sweep = {
+        "points": [
+            {"name": "small", "processors": 1},
+            {"name": "slow net", "processors": 2, "machine.latency": "1 ms"},
+        ],
+        "memory.fraction": [0.5, 1],
+    }
+    config = config_from_mapping({**BASE, "sweep": sweep})
+    assert further_columns(config) == ("point",)
+    found = [p for p in grid(config) if p.policy.title == "ray"]
+    assert [(p.swept["point"], p.config.processors) for p in found] == [
+        ("small", 1), ("small", 1), ("slow net", 2), ("slow net", 2),
+    ]  # fmt: skip
+    assert found[2].config.machine_for(2).latency_ps == 10**9
+    assert found[0].config.machine_for(1).latency_ps != 10**9
+
+
+def test_the_reference_is_added_once_for_each_comparison() -> None:
+    for sweep in ({"policy": ["ray", "concurrent"]}, {"policy": ["ray", ["object", "concurrent"]]}):
+        titles = [p.policy.title for p in points(sweep)]
+        assert titles == ["object", "ray", "concurrent"]
+
+
+def test_keys_of_policies_are_set_in_the_policies_that_are_swept() -> None:
+    found = points({"policy.batch": [1, 9], "policy": ["ray", "concurrent"]})
+    assert [(p.policy.title, p.policy.batch, p.swept["policy.batch"]) for p in found] == [
+        ("object", 256, 1), ("ray", 1, 1), ("concurrent", 1, 1),
+        ("object", 256, 9), ("ray", 9, 9), ("concurrent", 9, 9),
+    ]  # fmt: skip
+
+
+def test_policies_that_differ_need_different_names() -> None:
+    with pytest.raises(ConfigError, match="two policies are called 'ray'"):
+        points({"policy": ["ray", {"name": "ray", "batch": 2}]})
+
+
+def test_what_no_rule_reads_makes_no_other_simulation() -> None:
+    for policy, tasks in (("ray", 2), ("object", 1), ("replicated", 1)):
+        sweep = {"policy.batch": [1, 9]}
+        made = plan(config_from_mapping({**BASE, "policy": policy, "sweep": sweep}))
+        assert len({each.task.key for each in made.points if each.point.policy.name == policy}) == (
+            tasks
+        )
+    parameters = PolicyParameters("object", "mine", min_load=3, batch=2, ask_at_least=5)
+    assert canonical(parameters) == PolicyParameters("object")
+    unmerged = PolicyParameters("object", merge_requests=False)
+    assert canonical(unmerged) == unmerged
+
+
+def test_equal_points_are_one_simulation() -> None:
+    sweep = {
+        "points": [
+            {"name": "a", "processors": 2},
+            {"name": "b", "processors": 2, "machine.shape": [2, 1, 1]},
+            {"name": "c", "processors": 2, "machine.quantum": 3},
+        ]
+    }
+    made = plan(config_from_mapping({**BASE, "sweep": sweep}))
+    assert len(made.points) == 6
+    assert len(made.tasks) == 4
+    replicated = {**BASE, "policy": "replicated", "sweep": {"memory.fraction": [0.1, 0.5]}}
+    assert len(plan(config_from_mapping(replicated)).tasks) == 3
+
+
+def test_neighbouring_tasks_share_their_placement() -> None:
+    sweep = {"policy.batch": [1, 9], "memory.fraction": [0.1, 0.5, 1]}
+    tasks = plan(config_from_mapping({**BASE, "sweep": sweep, "seeds": [0, 1]})).tasks
+    keys = [task.placement_key for task in tasks]
+    changes = sum(a != b for a, b in pairwise(keys))
+    assert changes == len(set(keys)) - 1 == 5
+
+
+def test_two_scenes_of_one_name_are_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    scene = "v\nfrom 0 0 0\nat 1 0 0\nup 0 0 1\nangle 45\nhither 1\nresolution 8 8\nl 1 1 1\n"
+    files = []
+    for n in (1, 2):
+        (tmp_path / str(n)).mkdir()
+        files.append(tmp_path / str(n) / "x.nff")
+        files[-1].write_text(f"{scene}f 1 1 1 1 0 0 0 0\ns {n} 0 0 1\n")
+    sweep = {"scene": [str(file) for file in files]}
+    with pytest.raises(ConfigError, match="two different points are both called scene x,"):
+        plan(config_from_mapping({**BASE, "sweep": sweep}))
+    named = {"points": [{"name": str(n), "scene": str(file)} for n, file in enumerate(files)]}
+    assert len(plan(config_from_mapping({**BASE, "sweep": named})).points) == 4
+
+
+@pytest.mark.parametrize(
+    ("sweep", "problem"),
+    [
+        ({"processors, memory.fraction": [[1]]}, "expected a list of 2 values"),
+        ({"processors, memory.fraction": [3]}, "expected a list of 2 values"),
+        ({"processors": [1], "processors, quantum": [[1, 1]]}, "processors is swept twice"),
+        ({"memory.fraction": [1], "memory.bytes": [1]}, "expected memory.fraction or memory.bytes"),
+        ({"seeds": [1]}, "'seeds' can't be swept"),
+        ({"processors, seeds": [[1, 1]]}, "'seeds' can't be swept"),
+        ({"engine": ["simpy"]}, "'engine' can't be swept"),
+        ({"sweep.x": [1]}, "'sweep.x' can't be swept"),
+        ({"points": [1]}, "expected a mapping with a name"),
+        ({"points": [{"processors": 1}]}, "expected a mapping with a name"),
+        ({"points": [{"name": "a"}, {"name": "a"}]}, "two are called 'a'"),
+        ({"points": [{"name": "a", "procs": 1}]}, "unknown key 'procs'"),
+        ({"points": []}, "expected a list of 1 to 1000 values"),
+        ({"processors, ": [[1, 2]]}, "unknown key ''"),
+        ({"machine.shape, processors": [[[2, 1, 1], 3]]}, "product is processors = 3"),
+        ({"machine.shape": [[2, 1, 1], [4, 1, 1]], "processors": [2, 4]}, "product is processors"),
+    ],
+)
+def test_mistakes(sweep: dict[str, object], problem: str) -> None:
+    with pytest.raises(ConfigError, match=re.escape(problem)):
+        points(sweep)
+
+
+def test_axes_need_no_configuration() -> None:
+    axes = axes_of({"processors": [1, 2]})
+    assert [dict(choice.assignments) for choice in axes["processors"]] == [
+        {"processors": 1}, {"processors": 2},
+    ]  # fmt: skip
+
+
+def test_only_simulations_with_given_seeds() -> None:
+    for more, problem in (({"method": "analytical"}, "method"), ({"tolerance": "2%"}, "tolerance")):
+        with pytest.raises(ConfigError, match=problem):
+            plan(config_from_mapping({**BASE, **more}))
