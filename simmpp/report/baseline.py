@@ -132,7 +132,7 @@ def reasons(baseline: Sweep, now: Sweep) -> list[str]:
     before, after = (each.record.get(WORKLOADS) for each in (baseline, now))
     if isinstance(before, dict) and isinstance(after, dict):
         others = [name for name in before if before[name] != after.get(name)]
-        found += [f"the rays of {name} are others" for name in others]
+        found += [f"{name} was traced by other code, or is another scene" for name in others]
     return found
 
 
