@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from simmpp.placement.parts import cut
 from simmpp.placement.placement import Owners
-from simmpp.placement.streams import generator
+from simmpp.streams import generator
 
 MORTON_BITS = 21
 """Bits a coordinate is cut to, so that three of them interleave into 63."""

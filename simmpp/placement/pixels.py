@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from simmpp.placement.parts import cut
 from simmpp.placement.placement import Pixels
-from simmpp.placement.streams import generator
+from simmpp.streams import generator
 
 
 def pixel_pes(

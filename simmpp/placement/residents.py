@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.placement.placement import Memory, Residents
-from simmpp.placement.streams import generator
+from simmpp.streams import generator
 from simmpp.workload.workload import Workload
 
 COARSE_PRE_PASS = 16

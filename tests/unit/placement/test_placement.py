@@ -15,7 +15,7 @@ from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.placement.residents import resident_count
-from simmpp.placement.streams import generator
+from simmpp.streams import generator
 from simmpp.workload.workload import Workload
 
 OWNERS = ("bisection", "morton", "round_robin", "random")

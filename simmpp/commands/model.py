@@ -1,0 +1,150 @@
+"""``simmpp model``: the paper's analytical model over nb and x, and its figure 2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from simmpp.model.analytical import Makespans
+    from simmpp.sweep.config import Config
+    from simmpp.workload.workload import Workload
+
+
+@click.command("model")
+@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Set a dotted key; method=analytical-measured feeds the model with measured r.",
+)
+@click.option(
+    "--ratio",
+    "ratio_texts",
+    multiple=True,
+    metavar="NAME=FACTOR",
+    help="A further map where startup, packing, object or test takes FACTOR times as long;"
+    " repeatable.  [default: startup=0.1, packing=10, test=10]",
+)
+@click.option(
+    "--imbalance",
+    type=click.FloatRange(0, 1),
+    default=0.0,
+    show_default=True,
+    help="Amplitude of zeta for the numbers; the figure has maps without and with.",
+)
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for model.csv and figure2.")
+def model_command(
+    config_path: Path,
+    overrides: tuple[str, ...],
+    ratio_texts: tuple[str, ...],
+    imbalance: float,
+    out: Path | None,
+) -> None:
+    """Say which classical dataflow the paper's analytical model expects to win.
+
+    The grid is that of the sweep's axes processors and memory.fraction, where there are such, and
+    that of the paper's claims (nb = 8 ... 1024) otherwise. Rays are those of CONFIG's scene at each
+    step, costs those of its machine. --out writes model.csv, and figure2.png and .svg: the winner
+    over nb and x for several cost ratios, and the border.
+    """
+    from simmpp.commands.files import folder
+    from simmpp.commands.terminal import output, table
+    from simmpp.commands.tracing import workload as workload_of
+    from simmpp.report.model import ANALYTICAL, MEASURED, model_grid, model_times, rows_of
+    from simmpp.sweep.config import load_config
+
+    config = load_config(config_path, overrides)
+    folder(out, "--out")
+    ratios = _ratios(ratio_texts)
+    grid = model_grid(config)
+    workload = workload_of(config)
+    times = model_times(config, workload, grid, imbalance=imbalance)
+    measured = config.settings.method == MEASURED
+    method = MEASURED if measured else ANALYTICAL
+    rows = rows_of(times, workload.name, method, 0.0 if measured else imbalance)
+    shown = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
+    console = output()
+    console.print(_heading(config, workload))
+    console.print(table([{name: _cell(name, row[name]) for name in shown} for row in rows]))
+    console.print(_conclusion(times))
+    if out is not None:
+        _write(config, workload, rows, ratios, out)
+
+
+def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
+    """``startup=0.1`` as a name and a factor."""
+    import math
+
+    from simmpp.errors import ConfigError
+    from simmpp.model.costs import GROUPS
+    from simmpp.report.model import DEFAULT_RATIOS
+
+    ratios: list[tuple[str, float]] = []
+    for text in texts:
+        name, _, number = text.partition("=")
+        try:
+            factor = float(number)
+        except ValueError:
+            factor = -1.0
+        if name not in GROUPS or not 0 <= factor < math.inf:
+            known = ", ".join(GROUPS)
+            raise ConfigError(f"--ratio: value {text!r}: expected NAME=FACTOR, a NAME of {known}")
+        ratios.append((name, factor))
+    return tuple(ratios) or DEFAULT_RATIOS
+
+
+def _heading(config: Config, workload: Workload) -> str:
+    from simmpp.model.analytical import rays_of
+
+    rays = rays_of(workload)
+    return (
+        f"{workload.name}: n0 = {workload.n_primaries} rays at the start, {len(rays.tests)} steps, "
+        f"{rays.mean_tests:.0f} rays at a step in the mean\n"
+        f"machine {config.settings.machine.preset}, method "
+        f"{'analytical' if config.settings.method == 'simulate' else config.settings.method}\n"
+    )
+
+
+def _cell(name: str, value: object) -> object:
+    from simmpp.units import format_ps
+
+    if name.endswith("_ps") and isinstance(value, int):
+        return format_ps(value)
+    return f"{value:.4g}" if isinstance(value, float) else value
+
+
+def _conclusion(times: Makespans) -> str:
+    from simmpp.model.border import borders, claims
+
+    at = zip(times.processors.tolist(), borders(times).tolist(), strict=True)
+    lines = [f"nb = {nb}: the winner changes at x = {x:.3f}" for nb, x in at if x == x]
+    for each in claims(times):
+        verdict = "holds" if each.holds else "does not hold"
+        lines.append(f"claim {each.claim} {verdict}: {each.simulated}")
+    return "\n" + "\n".join(lines or ["no change of winner at any nb"])
+
+
+def _write(
+    config: Config,
+    workload: Workload,
+    rows: list[dict[str, object]],
+    ratios: tuple[tuple[str, float], ...],
+    out: Path,
+) -> None:
+    from simmpp.model.analytical import rays_of
+    from simmpp.model.costs import costs_of
+    from simmpp.report.figure2 import draw_figure2
+    from simmpp.report.model import model_grid, panels, write_model
+
+    write_model(rows, out)
+    costs = costs_of(config.machine_for(config.processors), workload)
+    seed = config.settings.seeds[0]
+    maps = panels(costs, rays_of(workload), model_grid(config), ratios, seed)
+    heading = f"Analytical model of Nebel 1998, {workload.name}, {config.settings.machine.preset}"
+    for path in draw_figure2(maps, heading, out):
+        click.echo(f"wrote {path}")

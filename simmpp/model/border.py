@@ -1,0 +1,112 @@
+"""Where the winner changes between ray and object dataflow: the border of the paper's figure 2."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.model.analytical import Makespans, Rays
+from simmpp.model.costs import Costs
+
+Floats = NDArray[np.float64]
+PROCESSORS = (8, 16, 32, 64, 128, 256, 512, 1024)
+FRACTIONS = (
+    Fraction(1, 64),
+    *(Fraction(n, 100) for n in (3, 5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90, 100)),
+)
+"""The grid of the claims, where a configuration has no axes of its own."""
+RAY, TIE, OBJECT = -1, 0, 1
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a claim's predicate says of a grid."""
+
+    claim: str
+    holds: bool
+    simulated: str
+    """What was found instead, or how clearly it holds."""
+
+
+def winners(times: Makespans) -> NDArray[np.int8]:
+    """RAY, OBJECT or TIE for each point: (B, X) int8."""
+    return np.sign(times.ray - times.object).astype(np.int8)
+
+
+def border_without_imbalance(costs: Costs, processors: Floats, rays: Rays) -> Floats:
+    """The x at which TC = TO, with zeta = 0: (B,), below 0 where object dataflow always wins.
+
+    Both dataflows compute the same; with n = mean over the steps of all rays of the machine,
+    TC = TO where (1 - x) n / nb (A - P) = (nb - 1) M, with A the startups and packing of a request
+    and its object, sent and received, P a ray's packing and unpacking and M the startups and the
+    fixed packing of a message of rays: so T_ray has no part in it, and
+    x = 1 - nb (nb - 1) M / (n (A - P)). With packing that is negligible, A = 2 M: the border is
+    where a message holds half a ray.
+
+    Where a ray costs as much to pack as asking costs in all, A <= P, object dataflow always wins.
+    """
+    asking = 2 * costs.startup
+    asking += costs.pack_request + costs.unpack_request + costs.pack_object + costs.unpack_object
+    saved = asking - costs.pack_ray - costs.unpack_ray
+    message = costs.startup + costs.pack_message + costs.unpack_message
+    if saved <= 0:
+        return np.full(len(processors), -np.inf)
+    nb = np.asarray(processors, np.float64)
+    return np.asarray(1.0 - nb * (nb - 1) * message / (rays.mean_tests * saved))
+
+
+def borders(times: Makespans) -> Floats:
+    """The x at which the winner first changes, log-interpolated on the ratio TC / TO: (B,).
+
+    NaN where one dataflow wins at every x of the grid; ties are no change.
+    """
+    found = np.full(len(times.processors), np.nan)
+    for row, ratios in enumerate(np.log(times.ratio)):
+        known = np.flatnonzero(ratios)
+        for left, right in pairwise(known):
+            if ratios[left] * ratios[right] < 0:
+                weight = ratios[left] / (ratios[left] - ratios[right])
+                x = times.fractions
+                found[row] = x[left] + weight * (x[right] - x[left])
+                break
+    return found
+
+
+def claims(times: Makespans) -> tuple[Verdict, Verdict]:
+    """F2a: at every nb with a change, the winner changes once over x, from ray to object dataflow.
+    F2b: the x of the change does not increase with nb.
+
+    A grid without a change bears out neither.
+    """
+    return _changes_once(times), _never_rises(times)
+
+
+def _changes_once(times: Makespans) -> Verdict:
+    changing, wrong = [], []
+    for nb, row in zip(times.processors.tolist(), winners(times), strict=True):
+        decided = row[row != TIE]
+        changes = decided[np.flatnonzero(np.diff(decided)) + 1].tolist()
+        if changes:
+            changing.append(nb)
+        if changes not in ([], [OBJECT]):
+            wrong.append(nb)
+    found = f"changes at nb = {_listed(changing)}" if changing else "no change at any nb"
+    found += f"; not once, from ray to object, at nb = {_listed(wrong)}" if wrong else ""
+    return Verdict("F2a", bool(changing) and not wrong, found)
+
+
+def _never_rises(times: Makespans) -> Verdict:
+    at = borders(times)
+    changing = np.isfinite(at)
+    steps = np.diff(at[changing][np.argsort(times.processors[changing])])
+    pairs = zip(times.processors[changing].tolist(), at[changing].tolist(), strict=True)
+    found = ", ".join(f"x = {x:.3g} at nb = {nb}" for nb, x in pairs) or "no change at any nb"
+    return Verdict("F2b", bool(changing.sum() > 1 and (steps <= 0).all()), found)
+
+
+def _listed(numbers: list[int]) -> str:
+    return ", ".join(map(str, numbers))

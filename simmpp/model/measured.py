@@ -1,0 +1,75 @@
+"""The model's formulas fed with the n and r of a real workload on a real placement."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.engine.counts import Counts
+from simmpp.engine.synchronous import Dataflow, synchronous
+from simmpp.machine.machine import CopyCost, Machine
+from simmpp.machine.messages import RAYS
+from simmpp.model.costs import Costs, costs_of
+from simmpp.model.formulas import makespan, object_dataflow_ps, ray_dataflow_ps
+from simmpp.placement.placement import Placement
+from simmpp.workload.workload import Workload
+
+Ints = NDArray[np.int64]
+
+
+def measured_makespan_ps(
+    workload: Workload, machine: Machine, placement: Placement, dataflow: Dataflow
+) -> int:
+    """The makespan of method ``analytical-measured``, to the nearest picosecond.
+
+    n and r are counted by moving every ray step by step. The costs of a test and of an object are
+    the workload's means.
+    """
+    counts = synchronous(workload, machine, placement, dataflow).counts
+    times = step_times_ps(counts, dataflow, machine, costs_of(machine, workload))
+    return round(float(makespan(times)))
+
+
+def step_times_ps(
+    counts: Counts, dataflow: Dataflow, machine: Machine, costs: Costs
+) -> NDArray[np.int64] | NDArray[np.float64]:
+    """TC(i, k) or TO(i, k) from n and r: (K, nb).
+
+    Whole costs give int64 and the exact picoseconds of a run: a message of r rays is then packed in
+    the machine's time for r rays, rounded once, where the paper has r T_pack_ray.
+    """
+    costs = _whole(costs)
+    asked, served = counts.missing_by_holder(), counts.missing_by_owner()
+    if dataflow == "object":
+        return object_dataflow_ps(costs, counts.tests, counts.ended, asked, served)
+    messages = machine.processors - 1
+    packing = _packing_ps(counts, machine)
+    return ray_dataflow_ps(costs, counts.tests, counts.ended, messages, packing)
+
+
+def _whole(costs: Costs) -> Costs:
+    """Costs that are whole numbers as integers, so that sums of them are exact."""
+    values = {name: int(value) for name, value in vars(costs).items() if value == int(value)}
+    return replace(costs, **values)
+
+
+def _packing_ps(counts: Counts, machine: Machine) -> Ints:
+    """What each PE packs and unpacks at each step, messages without rays included: (K, nb)."""
+    pack, unpack = machine.pack[RAYS], machine.unpack[RAYS]
+    total = np.full_like(counts.tests, (machine.processors - 1) * (pack.fixed_ps + unpack.fixed_ps))
+    n_bytes = counts.rays * machine.ray_bytes
+    np.add.at(total, (counts.steps, counts.holders), _transfer_ps(pack, n_bytes))
+    np.add.at(total, (counts.steps, counts.owners), _transfer_ps(unpack, n_bytes))
+    return total
+
+
+def _transfer_ps(cost: CopyCost, n_bytes: Ints) -> Ints:
+    """bytes * 10^12 / bandwidth for each message, halves rounded up."""
+    if cost.bytes_per_s == 0:
+        return np.zeros_like(n_bytes)
+    sizes, which = np.unique(n_bytes, return_inverse=True)
+    doubled = [2 * size * 10**12 + cost.bytes_per_s for size in sizes.tolist()]
+    times = np.array([double // (2 * cost.bytes_per_s) for double in doubled], np.int64)
+    return times[which]
