@@ -10,7 +10,7 @@ import click
 if TYPE_CHECKING:
     from simmpp.workload.workload import Workload
 
-OBJECTS_SHOWN = 20
+OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 
 
 @click.command("workload")
@@ -54,26 +54,29 @@ def workload_command(
 
 
 def _list(workload: Workload, most_objects: int | None) -> None:
+    import numpy as np
+
     from simmpp.commands.terminal import output, table
     from simmpp.units import format_bytes
     from simmpp.workload.describe import generations, object_uses, rays_by_kind
 
     console = output()
     rows, columns = workload.picture
-    uses = object_uses(workload)
-    tested = sum(use["tests"] != 0 for use in uses)
+    tested = len(np.unique(workload.itinerary_objects))
     size = format_bytes(int(workload.object_bytes.sum()))
-    depths = ", ".join(map(str, generations(workload)))
+    depths = generations(workload)
+    deepest = f", ... to depth {len(depths)}" if len(depths) > DEPTHS_SHOWN else ""
     console.print(
         f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "
         f"{workload.n_tests} tests\n"
         f"{workload.n_objects} objects, {size}; {tested} of them tested\n"
-        f"rays by depth: {depths}",
+        f"rays by depth: {', '.join(map(str, depths[:DEPTHS_SHOWN]))}{deepest}",
         soft_wrap=True,
     )
     console.print()
     console.print(table(rays_by_kind(workload)))
     console.print()
-    console.print(table(uses[:most_objects]))
-    if most_objects is not None and len(uses) > most_objects:
-        console.print(f"... and {len(uses) - most_objects} more objects; --objects lists all")
+    console.print(table(object_uses(workload, most_objects)))
+    if most_objects is not None and workload.n_objects > most_objects:
+        rest = workload.n_objects - most_objects
+        console.print(f"... and {rest} more objects; --objects lists all")

@@ -41,8 +41,8 @@ def generations(workload: Workload) -> list[int]:
     return counts
 
 
-def object_uses(workload: Workload) -> list[Fact]:
-    """One row per object, the most tested first."""
+def object_uses(workload: Workload, most: int | None = None) -> list[Fact]:
+    """One row per object, the most tested first; only the first ``most`` if given."""
     tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
     own_cost = len(workload.object_test_ps) > 0
     return [
@@ -54,5 +54,5 @@ def object_uses(workload: Workload) -> list[Fact]:
             **({"test_ps": int(workload.object_test_ps[n])} if own_cost else {}),
             "tests": int(tests[n]),
         }
-        for n in np.argsort(-tests, kind="stable")
+        for n in np.argsort(-tests, kind="stable")[:most]
     ]
