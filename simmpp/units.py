@@ -21,7 +21,7 @@ UNLIMITED = 0
 LONGEST_PS = 10 * 10**12
 """Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
 MOST_BYTES = 2**60
-LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 2**60
+LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 9 * 10**15
 
 A_TIME = "a time such as '12 us'"
 A_SIZE = "a size such as '64 MB'"

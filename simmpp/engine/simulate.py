@@ -15,7 +15,7 @@ from simmpp.engine.state import State, new_state
 from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError, ModelError
 from simmpp.machine.machine import Machine
-from simmpp.machine.work import beyond_the_clock, total_compute_ps
+from simmpp.machine.work import beyond_the_clock, check_transfers, total_compute_ps
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.rules import DataflowPolicy
@@ -91,6 +91,7 @@ def _check(
             f"the workload has {workload.n_objects}"
         )
     total_compute_ps(workload, machine)
+    check_transfers(workload, machine)
 
 
 def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str) -> Result:

@@ -25,6 +25,18 @@ def total_compute_ps(workload: Workload, machine: Machine) -> int:
     return int(tests @ machine.test.of_objects(workload)) + workload.n_rays * machine.ray_ps
 
 
+def check_transfers(workload: Workload, machine: Machine) -> None:
+    """Raise ConfigError if the largest message that there can be would take half of the clock."""
+    largest_object = int(workload.object_bytes.max(initial=0))
+    payload_bytes = max(largest_object, workload.n_rays * machine.ray_bytes, machine.request_bytes)
+    copies = [cost.bytes_per_s for cost in (*machine.pack, *machine.unpack)]
+    rates = [*copies, machine.link_bytes_per_s, machine.injection_bytes_per_s]
+    slowest = min((rate for rate in rates if rate), default=0)
+    transfer_ps = (payload_bytes + machine.header_bytes) * 10**12 // slowest if slowest else 0
+    if transfer_ps > CLOCK_LIMIT_PS // 2:
+        raise beyond_the_clock()
+
+
 def beyond_the_clock() -> ConfigError:
     """The error of a run that would last too long."""
     return ConfigError(

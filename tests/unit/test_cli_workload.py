@@ -6,6 +6,7 @@ import csv
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
@@ -98,6 +99,20 @@ def test_what_needs_geometry() -> None:
     assert refused("run", "d/own.yaml", "--set", "picture.resolution=8").endswith(
         "picture goes with a scene that is traced, not with scene.workload"
     )
+
+
+def test_messages_that_outlast_the_clock_are_refused() -> None:
+    """A TiB at 1 kB/s takes 35 years; its picoseconds would wrap."""
+    np.savez(
+        "d/big.npz",
+        itinerary_offsets=[0, 2, 4],
+        itinerary_objects=[0, 1, 1, 0],
+        object_bytes=[2**40, 2**40],
+    )
+    slow = ("--set", "scene=d/big.npz", "--set", "machine.link_bandwidth=1 kB/s")
+    few = ("--set", "processors=2", "--set", "memory.fraction=0")
+    assert "the simulated time exceeds the clock" in refused("run", "d/own.yaml", *slow, *few)
+    assert simmpp("run", "d/own.yaml", *slow[:2], *few).exit_code == 0
 
 
 def test_mistakes() -> None:
