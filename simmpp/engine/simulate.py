@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from simmpp.engine.compiled_engine import CompiledRun
+from simmpp.engine.fit import check_fit
 from simmpp.engine.layout import NONE
 from simmpp.engine.log import events
 from simmpp.engine.result import Result
@@ -46,8 +47,8 @@ def simulate(
     ``log`` keeps the event log, ``record_tests`` the (ray, object) pairs that PEs tested.
     ``progress`` is called now and then with the number of rays left.
 
-    Raises ConfigError on contradicting arguments, ModelError if rays are left and nothing is
-    scheduled (a bug, or a policy that starves).
+    Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
+    are left and nothing is scheduled (a bug, or a policy that starves).
     """
     _check(workload, machine, placement, policy, engine, ready_order)
     state = new_state(
@@ -81,15 +82,7 @@ def _check(
         raise ConfigError(f"no engine '{engine}'; expected one of {', '.join(ENGINES)}")
     if ready_order not in READY_ORDERS:
         raise ConfigError(f"no order '{ready_order}'; expected one of {', '.join(READY_ORDERS)}")
-    if placement.processors != machine.processors:
-        raise ConfigError(
-            f"the placement is for {placement.processors} PEs, the machine has {machine.processors}"
-        )
-    if len(placement.owners) != workload.n_objects:
-        raise ConfigError(
-            f"the placement is for {len(placement.owners)} objects, "
-            f"the workload has {workload.n_objects}"
-        )
+    check_fit(workload, machine, placement, policy)
     total_compute_ps(workload, machine)
     check_transfers(workload, machine)
 
