@@ -9,12 +9,12 @@ number of rays at each step is that of the workload traced in lockstep (``worklo
 that of rays with a geometric or fixed number of tests; all PEs lose the same share of their rays.
 
 *Imbalance.* The paper asks of zeta(i, j, k) in [-1, 1] that the number of rays stays n0 (equation
-(5), whose outer sum is over i, though printed over j). Here zeta depends on the owner: zeta(i, j, k)
-= z(j, k) for j != i, so that some owners' objects are wanted by all; the z of a step are evenly
+(5), whose outer sum is over i, though printed over j). Here zeta depends on the owner: zeta(i, j,
+k) = z(j, k) for j != i, so that some owners' objects are wanted by all; the z of a step are evenly
 spaced around 0, dealt out to the PEs anew at each step, and have the sum 0. What is left of a PE's
-own rays, zeta(i, i, k), follows from each ray needing exactly one object, sum_j r(i, j, k) = n(i, k -
-1), of which (5) is the sum over i. It is (1 - x) / (x (nb - 1)) z(i, k): in [-1, 1] for x >= 1/nb,
-and a PE that owns an equal part of the scene holds no less.
+own rays, zeta(i, i, k), follows from each ray needing exactly one object, sum_j r(i, j, k) = n(i,
+k - 1), of which (5) is the sum over i. It is (1 - x) / (x (nb - 1)) z(i, k): in [-1, 1] for x >=
+1/nb, and a PE that owns an equal part of the scene holds no less.
 """
 
 from __future__ import annotations
@@ -132,21 +132,24 @@ def analytical(
     *,
     imbalance: float = 0.0,
     seed: int = 0,
+    draws: int = 1,
     ray_messages: RayMessages = "to-all",
 ) -> Makespans:
     """TC and TO for every nb of ``processors`` and x of ``fractions``.
 
     ``imbalance`` is the amplitude of zeta, from 0 to 1. A fraction below 1/nb counts as 1/nb: nb
-    PEs can't hold less than the scene between them. With nb = 1 nothing is missing.
+    PEs can't hold less than the scene between them. With nb = 1 nothing is missing. With imbalance,
+    times are means over ``draws`` of zeta, of the seeds from ``seed`` on.
     """
     shares = np.asarray(fractions, np.float64)
     both = np.empty((2, len(processors), len(shares)))
     for row, nb in enumerate(processors):
         # Without imbalance all PEs are alike, and one stands for all.
-        zeta = imbalances(len(rays.tests), nb if imbalance else 1, imbalance, seed)
-        both[:, row] = _one_machine(
-            costs, nb, np.maximum(shares, 1.0 / nb), rays, zeta, ray_messages
-        )
+        width, seeds = (nb, range(seed, seed + draws)) if imbalance else (1, range(1))
+        zetas = [imbalances(len(rays.tests), width, imbalance, each) for each in seeds]
+        held = np.maximum(shares, 1.0 / nb)
+        times = [_one_machine(costs, nb, held, rays, zeta, ray_messages) for zeta in zetas]
+        both[:, row] = np.mean(times, axis=0)
     return Makespans(np.asarray(processors, np.int64), shares, both[0], both[1])
 
 

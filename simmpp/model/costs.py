@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from simmpp.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
+from simmpp.machine.network import PS_PER_S, transfer_ps
 from simmpp.workload.workload import Workload
 
-PS_PER_S = 10**12
 GROUPS = {
     "startup": ("sending", "receipt"),
     "packing": (
@@ -69,11 +68,6 @@ class Costs:
         return self.sending + self.receipt
 
 
-def operations() -> Iterable[str]:
-    """Names of the single operations."""
-    return (each.name for each in fields(Costs))
-
-
 def costs_of(machine: Machine, workload: Workload) -> Costs:
     """The costs that a machine has for a workload.
 
@@ -102,6 +96,9 @@ def costs_of(machine: Machine, workload: Workload) -> Costs:
 
 
 def _copy(cost: CopyCost, n_bytes: float) -> float:
+    """The machine's own picoseconds for a whole number of bytes."""
+    if n_bytes == int(n_bytes):
+        return cost.fixed_ps + transfer_ps(int(n_bytes), cost.bytes_per_s)
     return cost.fixed_ps + _per_byte(cost) * n_bytes
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -20,6 +21,8 @@ RAY_COLOUR, OBJECT_COLOUR = "#cfe3f5", "#e69f00"
 (Okabe and Ito 2008)."""
 DOTS_PER_INCH = 200
 PANELS_ACROSS = 4
+MARGIN = 1.12
+"""Room for the marks of the first and the last nb."""
 
 
 def draw_figure2(panels: Sequence[Panel], heading: str, folder: Path) -> list[Path]:
@@ -40,13 +43,10 @@ def draw_figure2(panels: Sequence[Panel], heading: str, folder: Path) -> list[Pa
         axes.tick_params(labelbottom=True)
     figure.legend(handles=_legend(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     paths = [folder / "figure2.png", folder / "figure2.svg"]
-    for path in paths:
-        figure.savefig(path, dpi=DOTS_PER_INCH, metadata={"Date": None} if _svg(path) else None)
+    with matplotlib.rc_context({"svg.hashsalt": "simmpp"}):  # ids in SVG are random otherwise
+        figure.savefig(paths[0], dpi=DOTS_PER_INCH)
+        figure.savefig(paths[1], dpi=DOTS_PER_INCH, metadata={"Date": None})
     return paths
-
-
-def _svg(path: Path) -> bool:
-    return path.suffix == ".svg"
 
 
 def _map(axes: Axes, panel: Panel) -> None:
@@ -63,7 +63,7 @@ def _map(axes: Axes, panel: Panel) -> None:
     axes.set_yticks(panel.grid.processors, [str(n) for n in panel.grid.processors])
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(nb.min(), nb.max())
+    axes.set_ylim(nb.min() / MARGIN, nb.max() * MARGIN)
     axes.tick_params(labelsize=7)
 
 

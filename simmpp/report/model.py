@@ -35,11 +35,13 @@ COLUMNS = (
     "winner",
 )
 WINNERS = {RAY: "ray", OBJECT: "object", TIE: "tie"}
-DEFAULT_RATIOS = (("startup", 0.01), ("object", 100.0), ("test", 10.0))
+DEFAULT_RATIOS = (("startup", 0.1), ("object", 100.0), ("test", 10.0))
 """Maps beside the machine's own: a group of operations, and how many times as long it takes."""
 FIGURE_IMBALANCE = 0.5
-FINE_PROCESSORS, FINE_FRACTIONS, FINE_STEPS = 33, 101, 48
+FINE_PROCESSORS, FINE_FRACTIONS, FINE_STEPS = 33, 81, 32
 """Resolution of the maps."""
+DRAWS = 4
+"""Draws of zeta that times with imbalance are means over."""
 
 
 class Grid(NamedTuple):
@@ -92,6 +94,7 @@ def model_times(
         rays_of(workload),
         imbalance=imbalance,
         seed=config.settings.seeds[0],
+        draws=DRAWS,
     )
 
 
@@ -156,6 +159,8 @@ def _panel(title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, s
     own = [float(x) for x in grid.fractions]
     return Panel(
         title,
-        analytical(costs, fine.tolist(), shares.tolist(), few, imbalance=imbalance, seed=seed),
-        analytical(costs, grid.processors, own, few, imbalance=imbalance, seed=seed),
+        analytical(
+            costs, fine.tolist(), shares.tolist(), few, imbalance=imbalance, seed=seed, draws=DRAWS
+        ),
+        analytical(costs, grid.processors, own, few, imbalance=imbalance, seed=seed, draws=DRAWS),
     )
