@@ -1,7 +1,9 @@
 """The baseline of `simmpp check`: a committed profits.csv with results.csv and run.json beside it.
 
 These are files of a sweep. Their ``run.json`` also holds the SHA-256 of the other two, so that a
-baseline that was merged by hand, or of which an update was interrupted, is noticed.
+baseline that was merged by hand, or of which an update was interrupted, is noticed. The versions
+that it records are for people and are not compared: float64 decides hits and integers are the
+clock, so no version of numba or embreex changes a row.
 """
 
 from __future__ import annotations
