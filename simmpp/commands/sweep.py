@@ -62,15 +62,21 @@ def sweep_command(
     run as the reference of the profits, if it is not named, and has its rows. The same command
     continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
     """
-    from simmpp.commands.files import folder
-    from simmpp.commands.sweeping import progress_of_sweep
-    from simmpp.commands.terminal import announce_compilation
     from simmpp.errors import ConfigError
-    from simmpp.sweep.config import load_config
-    from simmpp.sweep.sweep import run_sweep
+    from simmpp.sweep.processes import start_server
 
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
+    workers = workers or available_cores()
+    if workers > 1 and cluster is None:
+        start_server()  # before the imports below take their time
+
+    from simmpp.commands.files import folder
+    from simmpp.commands.sweeping import progress_of_sweep
+    from simmpp.commands.terminal import announce_compilation
+    from simmpp.sweep.config import load_config
+    from simmpp.sweep.sweep import run_sweep
+
     if engine is not None:
         overrides = (*overrides, f"engine={engine}")
     config = load_config(config_path, overrides)
@@ -80,7 +86,7 @@ def sweep_command(
     with progress_of_sweep() as watcher:
         result = run_sweep(
             config,
-            workers=workers or available_cores(),
+            workers=workers,
             cluster=cluster,
             timeout_s=timeout_s,
             out=out,

@@ -24,7 +24,7 @@ SEED = int(os.environ.get("SIMMPP_KILLS_SEED", "0"))
 TABLES = ("results.csv", "results.parquet", "profits.csv", "run.json")
 CONFIG = """
 scene: mountain:4
-picture: {resolution: 128}
+picture: {resolution: 192}
 seeds: [0, 1, 2]
 sweep:
   processors: [8, 32]
@@ -45,14 +45,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def begin(folder: Path, out: Path) -> subprocess.Popen[bytes]:
-    """A sweep of two workers that has begun its journal."""
+    """A sweep of two workers whose journal has its first outcome."""
     command = [sys.executable, "-c", "from simmpp.cli import main; main()", "sweep", "c.yaml"]
     command += ["--workers", "2", "--out", str(out)]
     with open(out.with_suffix(".log"), "wb") as log:
         sweep = subprocess.Popen(
             command, cwd=folder, stdout=log, stderr=log, start_new_session=True
         )
-    while not (out / FILE).exists():
+    while not (out / FILE).exists() or b'"numbers"' not in (out / FILE).read_bytes():
         assert sweep.poll() is None, out.with_suffix(".log").read_text()
         time.sleep(0.01)
     return sweep
@@ -71,7 +71,7 @@ def expected(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def lasts_s(folder: Path, expected: dict[str, bytes]) -> float:
-    """Seconds from the first line of the journal to the end."""
+    """Seconds from the first outcome to the end."""
     sweep = begin(folder, folder / "timed")
     began_s = time.monotonic()
     assert sweep.wait() == 0
