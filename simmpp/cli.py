@@ -10,6 +10,7 @@ import click
 from simmpp.commands.check import check_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
+from simmpp.commands.reproduce import reproduce_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
 from simmpp.commands.sweep import sweep_command
@@ -61,5 +62,6 @@ main.add_command(sweep_command)
 main.add_command(check_command)
 main.add_command(machine_command)
 main.add_command(model_command)
+main.add_command(reproduce_command)
 main.add_command(scene_command)
 main.add_command(workload_command)

@@ -113,18 +113,25 @@ def _simulate(
     watcher: Watcher,
 ) -> None:
     """Run what isn't finished; the tables are written even when interrupted."""
+    try:
+        run_pending(plan, results, crew, timeout_s, watcher)
+    finally:
+        if folder is not None:
+            write_tables(plan, results, folder)
+
+
+def run_pending(
+    plan: Plan, results: Results, crew: Crew, timeout_s: float | None, watcher: Watcher
+) -> None:
+    """Run what isn't finished; ``results`` grow one by one."""
     for text in results.notices:
         watcher.notice(text)
     pending = [task for task in plan.tasks if not results.finished(task.key)]
     watcher.planned(plan, results.outcomes)
-    try:
-        _trace(plan, pending, results, watcher)
-        for outcome in execute(pending, crew, timeout_s):
-            results.add(outcome)
-            watcher.simulated(outcome)
-    finally:
-        if folder is not None:
-            write_tables(plan, results, folder)
+    _trace(plan, pending, results, watcher)
+    for outcome in execute(pending, crew, timeout_s):
+        results.add(outcome)
+        watcher.simulated(outcome)
 
 
 def _trace(plan: Plan, tasks: Sequence[Task], results: Results, watcher: Watcher) -> None:

@@ -1,0 +1,108 @@
+"""Draws curves with their bands as PNG and SVG, readable in print and by the colour-blind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+
+from simmpp.report.curves import Curve, Panel, Scale, Stated
+
+STYLES: tuple[dict[str, Any], ...] = (
+    {"color": "#0072B2", "marker": "o", "linestyle": "-"},
+    {"color": "#D55E00", "marker": "s", "linestyle": "--"},
+    {"color": "#009E73", "marker": "^", "linestyle": "-."},
+    {"color": "#CC79A7", "marker": "D", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
+    {"color": "#E69F00", "marker": "v", "linestyle": (0, (1, 1))},
+    {"color": "#56B4E9", "marker": "P", "linestyle": (0, (6, 2))},
+    {"color": "#000000", "marker": "X", "linestyle": (0, (3, 1))},
+)
+"""Colours of Okabe and Ito (2008), which all readers tell apart; markers and lines differ too."""
+GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
+STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////", "linewidth": 0.6}
+WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
+SETTINGS: Any = {
+    "svg.hashsalt": "simmpp",
+    "svg.fonttype": "none",
+    "hatch.linewidth": 0.4,
+    "hatch.color": "0.72",
+    "font.size": 9,
+}
+"""Equal figures give equal bytes: ids in SVG are hashes with this salt, not random."""
+
+
+def draw(panels: Sequence[Panel], stem: Path) -> list[Path]:
+    """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=(WIDTH_IN * len(panels), HEIGHT_IN), layout="constrained")
+        grid = figure.subplots(1, len(panels), squeeze=False)
+        for axes, panel in zip(grid[0], panels, strict=True):
+            _draw_panel(axes, panel)
+        return save(figure, stem)
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a figure as ``stem``.png and ``stem``.svg, without dates."""
+    png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
+    figure.savefig(png, dpi=DOTS_PER_INCH)
+    figure.savefig(svg, metadata={"Date": None})
+    return [png, svg]
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    for stated in panel.stated:
+        _draw_stated(axes, stated)
+    if panel.level is not None:
+        axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
+    measured = [curve for curve in panel.curves if not curve.is_guide]
+    for curve in panel.curves:
+        style = GUIDE if curve.is_guide else STYLES[measured.index(curve) % len(STYLES)]
+        _draw_curve(axes, curve, style)
+    axes.set_xscale("log" if panel.x.is_log else "linear")
+    axes.set_yscale("log" if panel.y.is_log else "linear")
+    _divide(axes.xaxis, panel.x)
+    _divide(axes.yaxis, panel.y)
+    if not panel.y.is_log:
+        axes.set_ylim(bottom=0)
+    axes.set_title(panel.title, fontsize=10)
+    axes.grid(linewidth=0.3, color="0.8")
+    axes.set_axisbelow(True)
+    axes.legend(title=panel.legend or None, fontsize=8, title_fontsize=8, handlelength=3.2)
+
+
+def _draw_stated(axes: Axes, stated: Stated) -> None:
+    corner = (stated.left, stated.low)
+    width, height = stated.right - stated.left, stated.high - stated.low
+    axes.add_patch(Rectangle(corner, width, height, label=stated.label or None, zorder=0, **STATED))
+
+
+def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any]) -> None:
+    """The mean as a line, the range of the seeds as a band."""
+    xs = sorted(curve.points)
+    spreads = [curve.points[x] for x in xs]
+    means = [spread.mean for spread in spreads]
+    if curve.is_guide:
+        axes.plot(xs, means, label=curve.label, **style)
+        return
+    lows, highs = [spread.low for spread in spreads], [spread.high for spread in spreads]
+    axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
+    axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
+
+
+def _divide(axis: Axis, scale: Scale) -> None:
+    """Label an axis and choose its ticks."""
+    axis.set_label_text(scale.label)
+    if scale.is_log:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_minor_locator(NullLocator())
+        axis.set_minor_formatter(NullFormatter())
+    if scale.ticks:
+        axis.set_major_locator(FixedLocator(list(scale.ticks)))
+    axis.set_major_formatter("{x:g}")

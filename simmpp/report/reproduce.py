@@ -1,0 +1,109 @@
+"""The experiments of Nebel 1998 run again: rows, figures and the verdict on each claim."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from importlib.resources import as_file, files
+from itertools import chain
+from pathlib import Path
+
+from simmpp.report.claims import Evidence, judge
+from simmpp.report.figures import FIGURES
+from simmpp.report.measured import Measured
+from simmpp.report.panels import draw
+from simmpp.report.verdict import COLUMNS, Verdict
+from simmpp.sweep.config import Config, load_config
+from simmpp.sweep.crew import crew_for
+from simmpp.sweep.journal import Journal
+from simmpp.sweep.plan import Plan, plan
+from simmpp.sweep.provenance import all_versions, result_versions
+from simmpp.sweep.rows import result_columns
+from simmpp.sweep.sweep import Watcher, run_pending
+from simmpp.sweep.tables import Row, write_csv, write_text
+
+EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
+"""Stems of configurations, of the rows they give and of the figures that show them."""
+CLAIMS, RECORD = "claims.csv", "run.json"
+_FOLDER = files("simmpp") / "report" / "nebel98"
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What came out."""
+
+    verdicts: list[Verdict]
+    failed: list[str]
+    """The error of each row that has one."""
+    files: list[Path]
+
+
+def configuration(name: str) -> str:
+    """The YAML text of an experiment."""
+    return (_FOLDER / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def reproduce(
+    out: Path,
+    *,
+    seeds: int | None = None,
+    resolution: int | None = None,
+    workers: int = 1,
+    watcher: Watcher | None = None,
+) -> Reproduction:
+    """Simulate what isn't simulated yet in the folder ``out``; write everything there.
+
+    ``seeds`` (their number) and ``resolution`` (pixels along each side) take the place of those of
+    the experiments. A point that several experiments have is simulated once, and kept in ``out``
+    whatever the seeds and the resolution of the next call are.
+    Raises ConfigError if the folder holds results of other versions.
+    """
+    overrides = _overrides(seeds, resolution)
+    plans = {name: plan(_load(name, overrides)) for name in EXPERIMENTS}
+    out.mkdir(parents=True, exist_ok=True)
+    journal = Journal(out, {"versions": result_versions()})
+    with closing(journal), closing(crew_for(workers, None)) as crew:
+        run_pending(_together(plans), journal, crew, None, watcher or Watcher())
+        rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
+    return _report(rows, overrides, out)
+
+
+def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
+    chosen = [] if seeds is None else [f"seeds={list(range(seeds))}"]
+    chosen += [] if resolution is None else [f"picture.resolution={resolution}"]
+    return tuple(chosen)
+
+
+def _load(name: str, overrides: Sequence[str]) -> Config:
+    with as_file(_FOLDER / f"{name}.yaml") as path:
+        return load_config(path, overrides)
+
+
+def _together(plans: Mapping[str, Plan]) -> Plan:
+    """One plan of all points: equal ones are simulated once, neighbours share what they can."""
+    first = next(iter(plans.values()))
+    return Plan(first.config, tuple(chain(*(each.points for each in plans.values()))), ())
+
+
+def _report(rows: Mapping[str, list[Row]], overrides: Sequence[str], out: Path) -> Reproduction:
+    """Write configurations, rows, figures, claims and the record."""
+    written: list[Path] = []
+    for name, each in rows.items():
+        write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
+        write_csv(each, result_columns(), out / f"{name}.csv")
+    measured = {name: Measured(each) for name, each in rows.items()}
+    for figure, (name, panels) in FIGURES.items():
+        written += draw(panels(measured[name]), out / figure)
+    verdicts = judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
+    write_csv([asdict(each) for each in verdicts], COLUMNS, out / CLAIMS)
+    record = {"set": list(overrides), "versions": all_versions()}
+    write_text(json.dumps(record, indent=1) + "\n", out / RECORD)
+    errors = [row["error"] for each in rows.values() for row in each if row["error"]]
+    return Reproduction(verdicts, errors, written)
+
+
+def _said(overrides: Sequence[str]) -> str:
+    """A comment on top of a configuration that was not run as it is."""
+    return f"# Run with {' '.join(f'--set {each!r}' for each in overrides)}\n" if overrides else ""
