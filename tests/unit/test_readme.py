@@ -1,9 +1,15 @@
 """What the README promises: its two commands are marked, its script runs."""
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from simmpp.cli import main
 
 README = Path(__file__).parents[2] / "README.md"
 
@@ -29,3 +35,15 @@ def test_the_script_runs(tmp_path: Path) -> None:
     policies = [line.split(":")[0] for line in done.stdout.splitlines()]
     assert policies == ["object", "ray", "concurrent"]
     assert done.stdout.startswith("object: time 1.00, messages 1.00")
+
+
+def test_the_quick_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "configs").symlink_to(README.parent / "configs")
+    monkeypatch.chdir(tmp_path)
+    lines = "".join(blocks("quick", "sh")).splitlines()
+    assert len(lines) > 5
+    for line in lines:
+        program, *arguments = shlex.split(line, comments=True)
+        assert program == "simmpp"
+        done = CliRunner().invoke(main, arguments)
+        assert done.exit_code == 0, f"{line}: {done.output}"
