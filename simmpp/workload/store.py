@@ -9,6 +9,7 @@ import os
 import tempfile
 import warnings
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,11 @@ from simmpp.workload.workload import Workload, frozen
 
 TEXTS = ("name", "digest", "picture")
 """Fields of a workload that are no arrays; they are stored in ``header``."""
+DAMAGED = (
+    *(OSError, ValueError, KeyError, EOFError, TypeError),
+    *(RuntimeError, zipfile.BadZipFile, zlib.error),  # such as an encrypted or a compressed member
+)
+"""What numpy and zipfile raise for a file that isn't, or is no longer, an npz of arrays."""
 
 
 def workload_for(
@@ -120,7 +126,7 @@ def _read(
         name, digest, rows, columns, checksum = map(str, arrays.pop("header"))
         picture = int(rows), int(columns)
         arrays = {name: arrays[name] for name in _array_names()}
-    except (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile) as error:
+    except DAMAGED as error:
         problem = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise WorkloadError(f"not a workload: {problem}", where=str(path)) from None
     return frozen(Workload(name=name, digest=digest, picture=picture, **arrays)), checksum
