@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     multiple=True,
     metavar="NAME=FACTOR",
     help="A further map where startup, packing, object or test takes FACTOR times as long;"
-    " repeatable.  [default: startup=0.1, packing=10, test=10]",
+    " repeatable.  [default: packing=100, object=100, test=10]",
 )
 @click.option(
     "--imbalance",
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for model.csv and figure2.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for figure2.csv and figure2.")
 def model_command(
     config_path: Path,
     overrides: tuple[str, ...],
@@ -49,7 +49,7 @@ def model_command(
 
     The grid is that of the sweep's axes processors and memory.fraction, where there are such, and
     that of the paper's claims (nb = 8 ... 1024) otherwise. Rays are those of CONFIG's scene at each
-    step, costs those of its machine. --out writes model.csv, and figure2.png and .svg: the winner
+    step, costs those of its machine. --out writes figure2.csv, and figure2.png and .svg: the winner
     over nb and x for several cost ratios, and the border.
     """
     from simmpp.commands.files import folder

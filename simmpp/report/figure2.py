@@ -43,7 +43,7 @@ def draw_figure2(panels: Sequence[Panel], heading: str, folder: Path) -> list[Pa
         axes.tick_params(labelbottom=True)
     figure.legend(handles=_legend(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     paths = [folder / "figure2.png", folder / "figure2.svg"]
-    with matplotlib.rc_context({"svg.hashsalt": "simmpp"}):  # ids in SVG are random otherwise
+    with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
         figure.savefig(paths[0], dpi=DOTS_PER_INCH)
         figure.savefig(paths[1], dpi=DOTS_PER_INCH, metadata={"Date": None})
     return paths

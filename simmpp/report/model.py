@@ -35,7 +35,7 @@ COLUMNS = (
     "winner",
 )
 WINNERS = {RAY: "ray", OBJECT: "object", TIE: "tie"}
-DEFAULT_RATIOS = (("startup", 0.1), ("object", 100.0), ("test", 10.0))
+DEFAULT_RATIOS = (("packing", 100.0), ("object", 100.0), ("test", 10.0))
 """Maps beside the machine's own: a group of operations, and how many times as long it takes."""
 FIGURE_IMBALANCE = 0.5
 FINE_PROCESSORS, FINE_FRACTIONS, FINE_STEPS = 33, 81, 32
@@ -134,8 +134,8 @@ def rows_of(times: Makespans, scene: str, method: str, imbalance: float) -> list
 
 
 def write_model(rows: Sequence[Row], folder: Path) -> None:
-    """Write ``model.csv``."""
-    write_csv(rows, COLUMNS, folder / "model.csv")
+    """Write ``figure2.csv``."""
+    write_csv(rows, COLUMNS, folder / "figure2.csv")
 
 
 def panels(
