@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from itertools import product
 from pathlib import Path
 
 import pandas
@@ -16,16 +17,22 @@ from hypothesis import strategies as st
 
 from simmpp.cli import main
 from simmpp.compiled import cache_folder
+from simmpp.engine.simulate import simulate
 from simmpp.errors import ConfigError, ModelError
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.table import POLICIES
 from simmpp.sweep import plan as planning
 from simmpp.sweep import worker
-from simmpp.sweep.config import config_from_mapping
+from simmpp.sweep.config import config_from_mapping, with_key
 from simmpp.sweep.crew import Crew
 from simmpp.sweep.execute import outcomes
 from simmpp.sweep.outcome import Outcome
 from simmpp.sweep.plan import Plan, plan
-from simmpp.sweep.rows import result_columns
+from simmpp.sweep.point import make_point, run_point
+from simmpp.sweep.rows import in_order, integers, result_columns, row
 from simmpp.sweep.sweep import run_sweep
+from simmpp.sweep.task import canonical
+from simmpp.sweep.workloads import workload_of
 
 CONFIG = {
     "scene": "tetra:2",
@@ -71,6 +78,32 @@ def test_columns_and_order(expected: dict[str, bytes], tmp_path: Path) -> None:
     keys = ["scene", "processors", "fraction", "effective_fraction", "policy", "seed"]
     assert rows[keys].equals(rows[keys].sort_values(keys, ignore_index=True))
     assert set(rows["engine"]) == {"compiled"}
+
+
+def test_rows_are_those_of_single_runs(made: Plan, expected: dict[str, bytes]) -> None:
+    """The way of ``simmpp run``, point by point."""
+    config = config_from_mapping(CONFIG)
+    rows = []
+    for nb, fraction, seed in product((1, 4), (0.3, 1), (0, 1)):
+        point = with_key(config, "processors", nb)
+        point = with_key(with_key(point, "memory.fraction", fraction), "engine", "compiled")
+        placed = make_point(point, workload_of(point), seed)
+        runs = [run for run in run_point(placed) if run.parameters.title != "replicated"]
+        rows += [row(placed, run) for run in runs]
+    lines = [",".join(map(str, each.values())) for each in in_order(rows)]
+    assert lines == expected["results.csv"].decode().splitlines()[1:]
+
+
+@pytest.mark.parametrize("name", POLICIES)
+def test_parameters_that_are_left_out_of_the_key_change_nothing(name: str) -> None:
+    config = config_from_mapping(CONFIG)
+    placed = make_point(with_key(config, "processors", 4), workload_of(config))
+    odd = PolicyParameters(name, "odd", 1, 3, 5, "none", merge_requests=False)
+    results = [
+        simulate(placed.workload, placed.machine, placed.placement, policy, engine="compiled")
+        for policy in (odd, canonical(odd))
+    ]
+    assert integers(results[0]) == integers(results[1])
 
 
 def test_any_number_of_workers_writes_the_same(expected: dict[str, bytes], tmp_path: Path) -> None:
@@ -164,7 +197,6 @@ def test_a_failed_point_is_a_row_and_is_run_again(
 
     Path(tmp_path / "c.yaml").write_text(json.dumps(CONFIG))
     arguments = ["sweep", str(tmp_path / "c.yaml"), "--workers", "1", "--out", str(tmp_path / "o")]
-    simulate = worker.simulate
     monkeypatch.setattr(worker, "simulate", starving)
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 1

@@ -111,6 +111,43 @@ def test_equal_points_are_one_simulation() -> None:
     assert len(plan(config_from_mapping(replicated)).tasks) == 3
 
 
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("scene", ["tetra:1", "tetra:2"]),
+        ("picture.resolution", [3, 4]),
+        ("machine.send_startup", ["1 us", "2 us"]),
+        ("machine.preset", ["t3e", "t3d"]),
+        ("processors", [2, 3]),
+        ("memory.fraction", [0.4, 0.5]),
+        ("memory.bytes", ["1 kB", "2 kB"]),
+        ("memory.residents", ["random", "nearest"]),
+        ("memory.transient", [0, 1]),
+        ("placement.owners", ["bisection", "random"]),
+        ("placement.pixels", ["blocks", "tiles"]),
+        ("ready_order", ["depth-first", "breadth-first"]),
+    ],
+)
+def test_what_decides_results_makes_other_simulations(key: str, values: list[object]) -> None:
+    made = plan(config_from_mapping({**BASE, "sweep": {key: values}}))
+    assert len(made.tasks) == 4
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("policy.min_load", ["1%", 7]),
+        ("policy.batch", [1, 2]),
+        ("policy.ask_at_least", [1, 2]),
+        ("policy.load_info", ["exact", "none", {"refresh": "1 ms"}]),
+        ("policy.merge_requests", [True, False]),
+    ],
+)
+def test_every_key_of_concurrent_dataflow_is_read(key: str, values: list[object]) -> None:
+    config = {**BASE, "policy": "concurrent", "sweep": {key: values}}
+    assert len(plan(config_from_mapping(config)).tasks) == len(values) + 1
+
+
 def test_neighbouring_tasks_share_their_placement() -> None:
     sweep = {"policy.batch": [1, 9], "memory.fraction": [0.1, 0.5, 1]}
     tasks = plan(config_from_mapping({**BASE, "sweep": sweep, "seeds": [0, 1]})).tasks
