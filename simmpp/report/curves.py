@@ -62,6 +62,8 @@ class Panel:
     stated: list[Stated] = field(default_factory=list)
     level: float | None = None
     """A value that divides winners from losers, drawn as a thin line."""
+    note: str = ""
+    """What lines and bands are."""
     legend: str = ""
     """What the curves' labels are, if that needs saying."""
 

@@ -28,6 +28,8 @@ NAMES = {
 }
 """The paper's names of scenes."""
 ON_EACH_PE = Scale("objects resident on each PE (% of the scene)", ticks=(0, 20, 40, 60, 80, 100))
+ACCELERATIONS = (1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32)
+"""Divisions of figure 6's axis."""
 FRACTIONS_OF_6 = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0)
 """Curves of figure 6, of all that are simulated and judged."""
 
@@ -41,7 +43,7 @@ def figure3(measured: Measured) -> list[Panel]:
     ]
     title = f"Figure 3: ray over object dataflow, {_name(scene)}"
     ratio = Scale("T(ray dataflow) / T(object dataflow)")
-    return [Panel(title, ON_EACH_PE, ratio, curves, level=1)]
+    return [Panel(title, ON_EACH_PE, ratio, curves, level=1, note=_note(measured))]
 
 
 def figure4(measured: Measured) -> list[Panel]:
@@ -72,8 +74,18 @@ def figure6(measured: Measured) -> list[Panel]:
     title = f"Figure 6: {_name(MOUNTAIN5)}, concurrent dataflow"
     said = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
     nb = Scale("processing elements (PEs)", is_log=True, ticks=tuple(numbers))
-    gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True)
-    return [Panel(title, nb, gained, [*curves, linear], [said], legend="of the scene on each PE")]
+    gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True, ticks=ACCELERATIONS)
+    return [
+        Panel(
+            title,
+            nb,
+            gained,
+            [*curves, linear],
+            [said],
+            note=_note(measured),
+            legend="of the scene on each PE",
+        )
+    ]
 
 
 def rings7(measured: Measured) -> list[Panel]:
@@ -87,13 +99,21 @@ def rings7(measured: Measured) -> list[Panel]:
     messages = partial(_profit, measured, MESSAGES, scene, nb, CONCURRENT)
     title = f"{_name(scene)}, {nb} PEs: "
     return [
-        Panel(title + "time profit", ON_EACH_PE, Scale("time profit", is_log=True), times, level=1),
+        Panel(
+            title + "time profit",
+            ON_EACH_PE,
+            Scale("time profit", is_log=True),
+            times,
+            level=1,
+            note=_note(measured),
+        ),
         Panel(
             title + "message profit",
             ON_EACH_PE,
             Scale("message profit"),
             [_over_x(labels[CONCURRENT], measured, messages)],
             level=1,
+            note=_note(measured),
         ),
     ]
 
@@ -117,7 +137,12 @@ def _profits(what: str, measured: Measured, column: str, stated: list[Stated]) -
         for scene in measured.scenes
     ]
     title = f"{what} of concurrent over object dataflow, {nb} PEs"
-    return Panel(title, ON_EACH_PE, Scale(what.partition(": ")[2]), curves, stated, level=1)
+    axis = Scale(what.partition(": ")[2])
+    return Panel(title, ON_EACH_PE, axis, curves, stated, level=1, note=_note(measured))
+
+
+def _note(measured: Measured) -> str:
+    return f"means of {measured.seeds} seeds, and their range" if measured.seeds > 1 else "one seed"
 
 
 def _over_x(label: str, measured: Measured, ratios_at: Callable[[float], Ratios]) -> Curve:

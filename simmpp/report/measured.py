@@ -60,6 +60,11 @@ class Measured:
         """X: the fractions x, rising."""
         return sorted({point.fraction for point in self._runs})
 
+    @property
+    def seeds(self) -> int:
+        """Seeds of the point that has most."""
+        return max(map(len, self._runs.values()), default=0)
+
     def ratios(self, column: str, above: Point, below: Point) -> Ratios:
         """The seed's own ratio of a column of ``results.csv`` between two points, for each seed.
 

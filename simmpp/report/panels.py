@@ -26,7 +26,7 @@ STYLES: tuple[dict[str, Any], ...] = (
 )
 """Colours of Okabe and Ito (2008), which all readers tell apart; markers and lines differ too."""
 GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
-STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////", "linewidth": 0.6}
+STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
 SETTINGS: Any = {
     "svg.hashsalt": "simmpp",
@@ -71,7 +71,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     _divide(axes.yaxis, panel.y)
     if not panel.y.is_log:
         axes.set_ylim(bottom=0)
-    axes.set_title(panel.title, fontsize=10)
+    axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
     axes.legend(title=panel.legend or None, fontsize=8, title_fontsize=8, handlelength=3.2)

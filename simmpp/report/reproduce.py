@@ -13,6 +13,7 @@ from pathlib import Path
 from simmpp.report.claims import Evidence, judge
 from simmpp.report.figures import FIGURES
 from simmpp.report.measured import Measured
+from simmpp.report.modelled import reproduce_figure2
 from simmpp.report.panels import draw
 from simmpp.report.verdict import COLUMNS, Verdict
 from simmpp.sweep.config import Config, load_config
@@ -23,9 +24,12 @@ from simmpp.sweep.provenance import all_versions, result_versions
 from simmpp.sweep.rows import result_columns
 from simmpp.sweep.sweep import Watcher, run_pending
 from simmpp.sweep.tables import Row, write_csv, write_text
+from simmpp.sweep.workloads import workload_of
 
 EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
 """Stems of configurations, of the rows they give and of the figures that show them."""
+MODEL = "figure2"
+"""Likewise, of the analytical model."""
 CLAIMS, RECORD = "claims.csv", "run.json"
 _FOLDER = files("simmpp") / "report" / "nebel98"
 
@@ -37,7 +41,6 @@ class Reproduction:
     verdicts: list[Verdict]
     failed: list[str]
     """The error of each row that has one."""
-    files: list[Path]
 
 
 def configuration(name: str) -> str:
@@ -67,7 +70,9 @@ def reproduce(
     with closing(journal), closing(crew_for(workers, None)) as crew:
         run_pending(_together(plans), journal, crew, None, watcher or Watcher())
         rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
-    return _report(rows, overrides, out)
+        model = _load(MODEL, overrides)
+        verdicts = reproduce_figure2(model, workload_of(model), out)
+    return _report(rows, verdicts, overrides, out)
 
 
 def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
@@ -87,21 +92,23 @@ def _together(plans: Mapping[str, Plan]) -> Plan:
     return Plan(first.config, tuple(chain(*(each.points for each in plans.values()))), ())
 
 
-def _report(rows: Mapping[str, list[Row]], overrides: Sequence[str], out: Path) -> Reproduction:
-    """Write configurations, rows, figures, claims and the record."""
-    written: list[Path] = []
-    for name, each in rows.items():
+def _report(
+    rows: Mapping[str, list[Row]], verdicts: list[Verdict], overrides: Sequence[str], out: Path
+) -> Reproduction:
+    """Write configurations, rows, figures, claims and the record; ``verdicts`` are the model's."""
+    for name in (MODEL, *rows):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
+    for name, each in rows.items():
         write_csv(each, result_columns(), out / f"{name}.csv")
     measured = {name: Measured(each) for name, each in rows.items()}
     for figure, (name, panels) in FIGURES.items():
-        written += draw(panels(measured[name]), out / figure)
-    verdicts = judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
+        draw(panels(measured[name]), out / figure)
+    verdicts += judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
     write_csv([asdict(each) for each in verdicts], COLUMNS, out / CLAIMS)
     record = {"set": list(overrides), "versions": all_versions()}
     write_text(json.dumps(record, indent=1) + "\n", out / RECORD)
     errors = [row["error"] for each in rows.values() for row in each if row["error"]]
-    return Reproduction(verdicts, errors, written)
+    return Reproduction(verdicts, errors)
 
 
 def _said(overrides: Sequence[str]) -> str:
