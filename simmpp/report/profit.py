@@ -5,12 +5,12 @@ Source: Nebel 1998, section 4 (figures 3 to 5).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from simmpp.engine.result import Result
 from simmpp.errors import ConfigError
+from simmpp.sweep.profits import ratio as ratio
 
 REFERENCE = "object"
 
@@ -24,13 +24,6 @@ class Profit:
     """Makespan of the reference / makespan of the policy."""
     messages: float
     """Messages of the reference / messages of the policy."""
-
-
-def ratio(reference: int, value: int) -> float:
-    """reference / value; nothing over nothing is 1, something over nothing is infinite."""
-    if value:
-        return reference / value
-    return math.inf if reference else 1.0
 
 
 def profits(results: Sequence[Result], reference: str = REFERENCE) -> tuple[Profit, ...]:

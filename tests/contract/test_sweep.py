@@ -1,11 +1,9 @@
 """A sweep gives the same rows whoever runs it, in whatever order, however often it was stopped."""
 
-import dataclasses
 import json
 import random
 from collections.abc import Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
 
@@ -26,7 +24,6 @@ from simmpp.sweep import worker
 from simmpp.sweep.config import config_from_mapping, with_key
 from simmpp.sweep.crew import Crew
 from simmpp.sweep.execute import outcomes
-from simmpp.sweep.outcome import Outcome
 from simmpp.sweep.plan import Plan, plan
 from simmpp.sweep.point import make_point, run_point
 from simmpp.sweep.rows import in_order, integers, result_columns, row
@@ -234,44 +231,3 @@ def test_a_point_that_takes_too_long_fails() -> None:
 def test_a_worker_with_other_versions_is_refused(made: Plan) -> None:
     outcome = worker.run_task(made.tasks[0], None, {**planning.result_versions(), "numpy": "1.0"})
     assert outcome.error.startswith("the worker has other versions: numpy is 1.0 for the sweep, ")
-
-
-class Fragile(Executor):
-    """A pool that breaks, with all that is in flight, when it is given one of some tasks."""
-
-    def __init__(self, deadly: set[str]) -> None:
-        self.deadly, self.flying, self.broken = deadly, list[Future[Outcome]](), False
-
-    def submit(self, fn, task, *arguments):  # type: ignore[no-untyped-def]
-        if self.broken:
-            raise BrokenProcessPool
-        future: Future[Outcome] = Future()
-        self.flying.append(future)
-        if task.key in self.deadly:
-            self.broken = True
-            for each in self.flying:
-                if not each.done():
-                    each.set_exception(BrokenProcessPool())
-        elif len(self.flying) % 3 == 0:
-            future.set_result(Outcome(task.key, {"messages": 1}))
-        else:
-            future.set_result(Outcome(task.key))
-        return future
-
-
-class Renewing(Crew):
-    def renew(self) -> None:
-        assert isinstance(self.executor, Fragile)
-        self.executor = Fragile(self.executor.deadly)
-
-
-@given(st.sets(st.integers(0, 11), max_size=4), st.integers(1, 6))
-def test_only_the_task_that_kills_its_worker_fails(numbers: set[int], in_flight: int) -> None:
-    tasks = [dataclasses.replace(SOME_TASK, key=str(n)) for n in range(12)]
-    deadly = {str(n) for n in numbers}
-    found = list(outcomes(tasks, Renewing(Fragile(deadly), in_flight), None))
-    assert sorted(o.key for o in found) == sorted(task.key for task in tasks)
-    assert {o.key for o in found if o.error} == deadly
-
-
-SOME_TASK = planning.Task("", "", "", config_from_mapping(CONFIG), None, 0)  # type: ignore[arg-type]
