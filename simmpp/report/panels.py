@@ -52,6 +52,7 @@ def save(figure: Figure, stem: Path) -> list[Path]:
     """Write a figure as ``stem``.png and ``stem``.svg, without dates."""
     png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
     figure.savefig(png, dpi=DOTS_PER_INCH)
+    figure.set_layout_engine("none")  # laid out once; the second file is to be the same
     figure.savefig(svg, metadata={"Date": None})
     return [png, svg]
 

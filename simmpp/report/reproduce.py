@@ -66,9 +66,11 @@ def reproduce(
     overrides = _overrides(seeds, resolution)
     plans = {name: plan(_load(name, overrides)) for name in EXPERIMENTS}
     out.mkdir(parents=True, exist_ok=True)
-    journal = Journal(out, {"versions": result_versions()})
-    with closing(journal), closing(crew_for(workers, None)) as crew:
-        run_pending(_together(plans), journal, crew, None, watcher or Watcher())
+    everything = _together(plans)
+    with closing(Journal(out, {"versions": result_versions()})) as journal:
+        pending = sum(not journal.finished(task.key) for task in everything.tasks)
+        with closing(crew_for(max(1, min(workers, pending)), None)) as crew:
+            run_pending(everything, journal, crew, None, watcher or Watcher())
         rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
         model = _load(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)

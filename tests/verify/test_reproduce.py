@@ -1,0 +1,119 @@
+"""The experiments of Nebel 1998 from configuration to verdict, on pictures of 16 x 16 pixels."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from simmpp.report.figures import FIGURES, PERCENT
+from simmpp.report.measured import Measured
+from simmpp.report.reproduce import EXPERIMENTS, MODEL, Reproduction, configuration, reproduce
+from simmpp.sweep.config import load_config
+from simmpp.sweep.outcome import Outcome
+from simmpp.sweep.profits import profit_rows
+from simmpp.sweep.sweep import Watcher
+from simmpp.sweep.tables import Row
+
+PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
+CLAIMS = ["F2a", "F2b", "F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2"]
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("nebel98")
+
+
+@pytest.fixture(scope="module")
+def done(out: Path) -> Reproduction:
+    return reproduce(out, seeds=1, resolution=16)
+
+
+def rows_of(path: Path) -> list[Row]:
+    with open(path, encoding="utf-8", newline="") as file:
+        rows: list[Row] = list(csv.DictReader(file))
+    for row in rows:
+        for name, cell in row.items():
+            if name in ("fraction", "effective_fraction"):
+                row[name] = float(cell)
+            elif cell.isdigit():
+                row[name] = int(cell)
+    return rows
+
+
+def test_each_claim_has_its_verdict(done: Reproduction, out: Path) -> None:
+    assert not done.failed
+    with open(out / "claims.csv", encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [row["claim"] for row in table] == CLAIMS == [each.claim for each in done.verdicts]
+    assert {row["holds"] for row in table} <= {"holds", "in part", "does not"}
+    assert all(row["paper"] and row["simulated"] and row["by"] for row in table)
+
+
+def test_each_figure_is_written_twice_beside_its_rows(done: Reproduction, out: Path) -> None:
+    for figure in (*FIGURES, MODEL):
+        assert (out / f"{figure}.png").read_bytes().startswith(b"\x89PNG")
+        assert "<svg" in (out / f"{figure}.svg").read_text(encoding="utf-8")
+    for name in (*EXPERIMENTS, MODEL):
+        assert (out / f"{name}.csv").stat().st_size
+        first, _, rest = (out / f"{name}.yaml").read_text(encoding="utf-8").partition("\n")
+        assert first == "# Run with --set 'seeds=[0]' --set 'picture.resolution=16'"
+        assert rest == configuration(name)
+
+
+def test_equal_points_of_all_figures_are_simulated_once(done: Reproduction, out: Path) -> None:
+    rows = {
+        tuple(row[name] for name in ("scene", "processors", "fraction", "policy", "seed"))
+        for name in EXPERIMENTS
+        for row in rows_of(out / f"{name}.csv")
+        if row["policy"] != "replicated"
+    }
+    simulated = [
+        line for line in (out / "points.jsonl").read_text().splitlines() if '"numbers"' in line
+    ]
+    assert len(simulated) == len(rows) + 5  # the replicated scenes, whatever the fraction
+
+
+def test_figures_show_the_rows(done: Reproduction, out: Path) -> None:
+    rows = rows_of(out / "figure4.csv")
+    (panel,) = FIGURES["figure4"][1](Measured(rows))
+    shown = {(each.label, x): each.points[x].mean for each in panel.curves for x in each.points}
+    names = {"mountain:5": "Mountain5", "rings:1": "Ring1"}
+    names |= {"tetra:5": "Tetrahedron5", "tetra:6": "Tetrahedron6"}
+    assert shown == {
+        (names[row["scene"]], PERCENT * row["fraction"]): row["time_profit"]
+        for row in profit_rows(rows)
+        if row["policy"] == "concurrent"
+    }
+
+
+class Idle(Watcher):
+    def simulated(self, outcome: Outcome) -> None:
+        raise AssertionError(outcome)
+
+
+def test_again_nothing_is_simulated_and_all_bytes_are_the_same(
+    done: Reproduction, out: Path
+) -> None:
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    assert reproduce(out, seeds=1, resolution=16, watcher=Idle()) == done
+    assert before == {path.name: path.read_bytes() for path in out.iterdir()}
+
+
+@pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])
+def test_experiments_have_eight_seeds_and_nothing_of_their_own(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "experiment.yaml"
+    path.write_text(configuration(name), encoding="utf-8")
+    settings = load_config(path).settings
+    assert name == MODEL or settings.seeds == tuple(range(8))
+    assert settings.model_fields_set <= {
+        "scene", "picture", "machine", "processors", "policy", "seeds", "sweep", "method"
+    }  # fmt: skip
+    assert settings.machine.model_fields_set == {"preset"}
+    assert all(policy.model_fields_set <= {"name"} for policy in settings.policy)
+
+
+@pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])
+def test_published_configurations_are_the_packages(name: str) -> None:
+    assert (PUBLISHED / f"{name}.yaml").read_text(encoding="utf-8") == configuration(name)
