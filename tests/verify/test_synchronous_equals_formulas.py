@@ -1,5 +1,6 @@
 """Synchronous simulation equals the paper's formulas, fed with the run's own n and r, exactly."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -8,6 +9,7 @@ from builders import BANDWIDTHS, TIMES_PS, random_placement, random_workload
 
 from simmpp.engine.counts import Counts
 from simmpp.engine.synchronous import DATAFLOWS, Dataflow, SynchronousResult, synchronous
+from simmpp.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.torus import default_shape
@@ -22,7 +24,7 @@ from simmpp.workload.workload import Workload
 
 DRAWS = 500
 TIMES = TIMES_PS["even"] + TIMES_PS["ties"] + (10**6, 123_456_789)
-RATES = BANDWIDTHS["uneven"] + (256_000_000, 999_999_937)
+RATES = (*BANDWIDTHS["even"], *BANDWIDTHS["ties"], 7_000_000, 256_000_000, 999_999_937)
 
 
 def random_machine(rng: np.random.Generator, nb: int) -> Machine:
@@ -168,6 +170,13 @@ def test_every_ray_makes_its_tests_once(dataflow: Dataflow) -> None:
         assert counts.ended.sum(axis=1).tolist() == steps.ended.tolist()
         assert counts.tests.sum() == workload.n_tests
         assert counts.ended.sum() == workload.n_rays
+
+
+def test_a_run_that_would_not_fit_the_clock_is_refused() -> None:
+    workload, machine, placement = draw(2)
+    slow = replace(machine, send_startup_ps=1 << 60)
+    with pytest.raises(ConfigError, match="clock"):
+        synchronous(workload, slow, placement, "object")
 
 
 def test_rays_move_in_ray_dataflow_as_equation_2_says() -> None:

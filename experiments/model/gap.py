@@ -1,0 +1,127 @@
+"""How far is the analytical model from the asynchronous simulation of real scenes?
+
+    python experiments/model/gap.py
+
+The four scenes of the paper, 512 x 512, depth 5, 64 PEs of the t3e preset, one seed. Writes
+gap.csv, a row per scene, x and dataflow; times of models are divided by the simulation's.
+"""
+
+from __future__ import annotations
+
+import csv
+from fractions import Fraction
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
+from simmpp.engine.simulate import simulate
+from simmpp.engine.synchronous import DATAFLOWS, Dataflow, synchronous
+from simmpp.machine.presets import machine
+from simmpp.model.analytical import analytical, rays_of
+from simmpp.model.costs import costs_of
+from simmpp.model.measured import measured_makespan_ps
+from simmpp.placement.place import place
+from simmpp.placement.placement import Memory, Placement, PlacementRules
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.scene.load import load_scene
+from simmpp.workload.picture import Picture
+from simmpp.workload.store import workload_for
+from simmpp.workload.workload import Workload
+
+HERE = Path(__file__).parent
+SCENES = ("mountain:5", "rings:1", "tetra:5", "tetra:6")
+PROCESSORS = 64
+MACHINE = machine("t3e", {}, PROCESSORS)
+FRACTIONS = (Fraction(1, 20), Fraction(1, 5), Fraction(1, 2), Fraction(4, 5))
+POLICIES: dict[Dataflow, PolicyParameters] = {
+    "object": PolicyParameters("object", merge_requests=False),
+    "ray": PolicyParameters("ray"),
+}
+"""The model's object dataflow has a request for each ray; the simulation's default merges them."""
+MODELS = {
+    "analytical": ("o", "#d55e00", "r from x and nb: equation (1)"),
+    "after_runs": ("s", "#e69f00", "the same without empty messages"),
+    "measured": ("D", "#0072b2", "r measured"),
+    "measured_waits": ("^", "#56b4e9", "r measured, PEs wait for messages"),
+    "simulated_merged": ("x", "#000000", "simulation, requests merged"),
+}
+"""Columns of times relative to the simulation, and how they are drawn."""
+
+Row = dict[str, str | float]
+
+
+def makespans(
+    workload: Workload, placement: Placement, dataflow: Dataflow
+) -> dict[str, int | float]:
+    """The time of one dataflow by each model and by the simulation, in ps."""
+    costs, rays = costs_of(MACHINE, workload), rays_of(workload)
+    share = [placement.effective_fraction]
+    paper = analytical(costs, [PROCESSORS], share, rays)
+    runs = analytical(costs, [PROCESSORS], share, rays, ray_messages="after-runs")
+    waits = synchronous(workload, MACHINE, placement, dataflow, waits=True)
+
+    def simulated(policy: PolicyParameters) -> int:
+        return simulate(workload, MACHINE, placement, policy, engine="compiled").makespan_ps
+
+    return {
+        "analytical": float(getattr(paper, dataflow)[0, 0]),
+        "after_runs": float(getattr(runs, dataflow)[0, 0]),
+        "measured": measured_makespan_ps(workload, MACHINE, placement, dataflow),
+        "measured_waits": waits.makespan_ps,
+        "simulated": simulated(POLICIES[dataflow]),
+        "simulated_merged": simulated(PolicyParameters(dataflow)),
+    }
+
+
+def row_of(scene: str, x: Fraction, dataflow: Dataflow, times: dict[str, int | float]) -> Row:
+    """The simulation's time in ms, and the others relative to it."""
+    row: Row = {"scene": scene, "fraction": float(x), "dataflow": dataflow}
+    row["simulated_ms"] = times["simulated"] / 1e9
+    return row | {name: times[name] / times["simulated"] for name in MODELS}
+
+
+def draw(rows: list[Row]) -> None:
+    """Model over simulation for each scene; 1 is agreement."""
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    for axes, dataflow in zip(figure.subplots(1, 2, sharey=True), DATAFLOWS, strict=True):
+        chosen = [row for row in rows if row["dataflow"] == dataflow]
+        for number, (model, (marker, colour, label)) in enumerate(MODELS.items()):
+            places = [n + 0.14 * (number - 2) for n in range(len(chosen))]
+            heights = [row[model] for row in chosen]
+            axes.scatter(places, heights, 16, marker=marker, color=colour, label=label)
+        axes.axhline(1.0, color="black", linewidth=0.8)
+        axes.set_yscale("log")
+        axes.set_yticks([0.03, 0.1, 0.3, 1, 2], ["0.03", "0.1", "0.3", "1", "2"], fontsize=8)
+        axes.yaxis.set_minor_locator(NullLocator())
+        axes.set_title(f"{dataflow} dataflow, 64 PEs", fontsize=9)
+        labels = [f"{row['scene']}, x = {row['fraction']}" for row in chosen]
+        axes.set_xticks(range(len(chosen)), labels, rotation=90, fontsize=7)
+    figure.axes[0].set_ylabel("model / asynchronous simulation", fontsize=8)
+    figure.axes[1].legend(fontsize=7, loc="lower right")
+    with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
+        figure.savefig(HERE / "gap.png", dpi=200)
+        figure.savefig(HERE / "gap.svg", metadata={"Date": None})
+
+
+def main() -> None:
+    """Run all scenes; write rows and the figure."""
+    rows: list[Row] = []
+    for scene in SCENES:
+        workload = workload_for(load_scene(scene), Picture())
+        for x in FRACTIONS:
+            placement = place(workload, PROCESSORS, Memory(x), PlacementRules(), seed=0)
+            for dataflow in DATAFLOWS:
+                times = makespans(workload, placement, dataflow)
+                rows.append(row_of(scene, x, dataflow, times))
+                print(rows[-1], flush=True)
+    with open(HERE / "gap.csv", "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    draw(rows)
+
+
+if __name__ == "__main__":
+    main()
