@@ -24,7 +24,6 @@ from simmpp.report.measured import (
 from simmpp.report.values import (
     At,
     Values,
-    average,
     cases,
     largest,
     largest_at,
@@ -97,7 +96,7 @@ def f3c(evidence: Evidence) -> Verdict:
     """The mean ratio over X at nb = 128 is > 1 and above that at 8."""
     ratios = ray_over_object(evidence.figure3)
     few, many = (
-        average([value for at, value in ratios.items() if at.processors == nb]) for nb in (8, MANY)
+        mean([value for at, value in ratios.items() if at.processors == nb]) for nb in (8, MANY)
     )
     return verdict(
         "F3c",

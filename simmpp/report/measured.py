@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from statistics import fmean
 from typing import NamedTuple
 
@@ -29,9 +29,9 @@ Ratios = tuple[float, ...]
 """One for each seed, in their order."""
 
 
-def mean(ratios: Ratios) -> float:
-    """The mean over seeds; nan, which is neither above nor below anything, if none has a result."""
-    return fmean(ratios) if ratios else math.nan
+def mean(values: Sequence[float]) -> float:
+    """The mean; nan, which is neither above nor below anything, if there is none."""
+    return fmean(values) if values else math.nan
 
 
 class Measured:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from simmpp.report.measured import CONCURRENT, Measured, Point, Ratios, mean
+from simmpp.report.measured import CONCURRENT, Measured, Point, mean
 from simmpp.report.verdict import Case
 
 
@@ -82,12 +82,6 @@ def largest(values: Iterable[float]) -> float:
 def largest_at(values: Values) -> At:
     """Where the largest is; a missing one if there is one."""
     return list(values)[int(np.argmax([*values.values()]))]
-
-
-def average(values: Collection[float]) -> float:
-    """The mean over cases; nan without any."""
-    ratios: Ratios = tuple(values)
-    return mean(ratios)
 
 
 def span(values: Iterable[float]) -> str:
