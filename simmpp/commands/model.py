@@ -53,7 +53,7 @@ def model_command(
     over nb and x for several cost ratios, and the border.
     """
     from simmpp.commands.files import folder
-    from simmpp.commands.terminal import output, table
+    from simmpp.commands.terminal import notice, output, table
     from simmpp.commands.tracing import workload as workload_of
     from simmpp.report.model import ANALYTICAL, MEASURED, model_grid, model_times, rows_of
     from simmpp.sweep.config import load_config
@@ -62,6 +62,8 @@ def model_command(
     folder(out, "--out")
     ratios = _ratios(ratio_texts)
     grid = model_grid(config)
+    if grid.left_out:
+        notice(f"the model takes {', '.join(grid.left_out)} as set outside of the sweep")
     workload = workload_of(config)
     times = model_times(config, workload, grid, imbalance=imbalance)
     measured = config.settings.method == MEASURED

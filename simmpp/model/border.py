@@ -34,7 +34,7 @@ class Verdict:
 
 def winners(times: Makespans) -> NDArray[np.int8]:
     """RAY, OBJECT or TIE for each point: (B, X) int8."""
-    return np.sign(times.ray - times.object).astype(np.int8)
+    return np.sign(times.ratio - 1.0).astype(np.int8)
 
 
 def border_without_imbalance(costs: Costs, processors: Floats, rays: Rays) -> Floats:

@@ -49,6 +49,8 @@ class Grid(NamedTuple):
 
     processors: tuple[int, ...]
     fractions: tuple[Fraction, ...]
+    left_out: tuple[str, ...]
+    """Keys that the sweep changes and that the model would see, but has no axis for."""
 
 
 class Panel(NamedTuple):
@@ -68,6 +70,7 @@ def model_grid(config: Config) -> Grid:
     """
     processors: set[int] = set()
     fractions: set[Fraction] = set()
+    left_out: dict[str, None] = {}
     for name, axis in axes_of(config.settings.sweep).items():
         for number, choice in enumerate(axis):
             point = point_at(config, {name: axis}, {name: number})
@@ -77,7 +80,17 @@ def model_grid(config: Config) -> Grid:
                 fractions.add(point.memory.fraction)
             if "memory.bytes" in choice.assignments:
                 raise ConfigError("sweep: memory.bytes: expected memory.fraction for the model")
-    return Grid(tuple(sorted(processors or PROCESSORS)), tuple(sorted(fractions or FRACTIONS)))
+            left_out |= dict.fromkeys(key for key in choice.assignments if _matters(key))
+    return Grid(
+        tuple(sorted(processors or PROCESSORS)),
+        tuple(sorted(fractions or FRACTIONS)),
+        tuple(left_out),
+    )
+
+
+def _matters(key: str) -> bool:
+    """The model has no policies, and takes the method as it is."""
+    return key not in ("processors", "memory.fraction") and key.split(".")[0] != "policy"
 
 
 def model_times(
@@ -153,7 +166,9 @@ def panels(
 
 def _panel(title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, seed: int) -> Panel:
     few = grouped(rays, FINE_STEPS)
-    lowest, highest = max(min(grid.processors), 2), max(*grid.processors, 3)
+    lowest, highest = max(min(grid.processors), 2), max(grid.processors)
+    if highest <= lowest:
+        lowest, highest = max(lowest // 2, 2), 2 * lowest
     fine = np.unique(np.geomspace(lowest, highest, FINE_PROCESSORS).round().astype(np.int64))
     shares = np.linspace(0.0, 1.0, FINE_FRACTIONS)
     own = [float(x) for x in grid.fractions]

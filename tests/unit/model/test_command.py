@@ -58,6 +58,21 @@ def test_without_axes_the_grid_is_that_of_the_claims(tmp_path: Path) -> None:
     assert len(rows(tmp_path)) == 8 * 14
 
 
+def test_one_point_and_costs_of_nothing_have_a_figure(tmp_path: Path) -> None:
+    free = "machine: {send_startup: 0, receive_startup: 0, pack: {bandwidth: unlimited},"
+    free += " unpack: {bandwidth: unlimited}}"
+    text = CONFIG.split("sweep")[0] + free + "\nsweep: {processors: [4], memory.fraction: [0.5]}"
+    done = model(tmp_path, text, "--out", str(tmp_path / "out"))
+    assert done.exit_code == 0, done.output
+    assert [row["winner"] for row in rows(tmp_path)] == ["tie"]
+
+
+def test_other_axes_are_said_to_be_left_out(tmp_path: Path) -> None:
+    done = model(tmp_path, CONFIG.replace("sweep: {", "sweep: {scene: [tetra:1, tetra:2], "))
+    assert done.exit_code == 0
+    assert "the model takes scene as set outside of the sweep" in done.output
+
+
 @pytest.mark.parametrize("ratio", ["startup", "startup=", "startup=-1", "startup=nan", "hop=2"])
 def test_a_wrong_ratio_is_one_line(tmp_path: Path, ratio: str) -> None:
     done = model(tmp_path, CONFIG, "--ratio", ratio)
