@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simmpp.report.measured import CONCURRENT, Measured, Point, mean
 from simmpp.report.verdict import Case
@@ -92,8 +93,13 @@ def span(values: Iterable[float]) -> str:
 
 def rank_correlation(a: Values, b: Values) -> float:
     """Spearman's, of two curves over the same X; nan if one is missing or constant."""
-    from scipy.stats import rankdata  # takes a second
-
-    ranks = [rankdata([value for _, value in sorted(each.items())]) for each in (a, b)]
+    ranks = [_ranks([value for _, value in sorted(each.items())]) for each in (a, b)]
     with np.errstate(invalid="ignore"):
-        return float(np.corrcoef(*ranks)[0, 1])
+        return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
+
+
+def _ranks(values: list[float]) -> NDArray[np.float64]:
+    """The rank of each value, equal ones sharing theirs; nan if one is missing."""
+    _, which, counts = np.unique(values, return_inverse=True, return_counts=True)
+    ranks = np.cumsum(counts) - (counts - 1) / 2
+    return np.where(np.isnan(values).any(), np.nan, ranks[which])

@@ -83,3 +83,13 @@ def test_equal_figures_are_equal_bytes(tmp_path: Path) -> None:
     again = [path.read_bytes() for path in draw([panel, panel], tmp_path / "b")]
     assert first == again
     assert b"<dc:date>" not in first[1]
+
+
+def test_ranks_are_shared_and_a_missing_value_leaves_none() -> None:
+    xs = (0.1, 0.2, 0.3, 0.4)
+    a, tied, missing = (
+        {At("s", 8, x): value for x, value in zip(xs, values, strict=True)}
+        for values in ((1, 2, 3, 4), (5, 7, 7, 9), (1, 2, math.nan, 4))
+    )
+    assert round(rank_correlation(a, tied), 6) == 0.948683  # (1, 2.5, 2.5, 4): 4.5 / sqrt(5 * 4.5)
+    assert math.isnan(rank_correlation(a, missing))
