@@ -40,7 +40,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     rules = config.placement_rules
     if everywhere:
         rules = PlacementRules(pixels=rules.pixels)
-    machine = asdict(config.machine_for(config.processors))
+    machine = asdict(replace(config.machine_for(config.processors), sources={}))
     for label in ("name", "sources"):
         del machine[label]
     place = _hash(digest, machine, memory, asdict(rules), point.seed)
