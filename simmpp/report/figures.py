@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from simmpp.report.claims import (
+from simmpp.report.claims_concurrent import (
     ACCELERATION,
     FEW,
     HALF,

@@ -10,11 +10,12 @@ from importlib.resources import as_file, files
 from itertools import chain
 from pathlib import Path
 
-from simmpp.report.claims import Evidence, judge
+from simmpp.report.claims import judge
 from simmpp.report.figures import FIGURES
 from simmpp.report.measured import Measured
 from simmpp.report.modelled import reproduce_figure2
 from simmpp.report.panels import draw
+from simmpp.report.values import Evidence
 from simmpp.report.verdict import COLUMNS, Verdict
 from simmpp.sweep.config import Config, load_config
 from simmpp.sweep.crew import crew_for

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,15 @@ class At(NamedTuple):
 
 Values = dict[At, float]
 """A mean over seeds for each case."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The rows of the figures that claims are about."""
+
+    figure3: Measured
+    figure4: Measured
+    figure6: Measured
 
 
 def points(measured: Measured) -> list[At]:
@@ -68,6 +78,11 @@ def cases(
 
 def _accounts(measured: Measured, at: At, policies: Sequence[str]) -> dict[str, dict[str, float]]:
     return {policy: measured.accounts(Point(*at, policy)) for policy in policies}
+
+
+def partitioned(values: Values) -> Values:
+    """Where not all of the scene is on each PE."""
+    return {at: value for at, value in values.items() if at.x < 1}
 
 
 def of_scene(values: Values, scene: str) -> Values:

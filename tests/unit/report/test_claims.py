@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from simmpp.report.claims import Evidence, judge
+from simmpp.report.claims import judge
 from simmpp.report.measured import Measured
+from simmpp.report.values import Evidence
 from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
 
 X = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 0.9, 1.0)
@@ -156,8 +157,9 @@ def test_the_papers_own_curves_hold() -> None:
         ("F6a", DOES_NOT, {"six": figure6(lambda x: 2.19)}),
         ("T1", DOES_NOT, {"four": figure4(papers_curve, ray=1.0)}),
         ("T1", HOLDS, {"four": figure4(papers_curve, ray=1.01)}),
-        # a third of the policies and scenes may fail before half do
-        ("T2", IN_PART, {"four": figure4(papers_curve, replicated=0.9)}),
+        # only where concurrent dataflow is more than twice as fast as object dataflow: at 0.1
+        ("T2", IN_PART, {"four": figure4(papers_curve, replicated=0.5)}),
+        ("T2", DOES_NOT, {"four": figure4(papers_curve, replicated=0.9)}),
         ("T2", DOES_NOT, {"four": figure4(papers_curve, replicated=3)}),
     ],
 )
