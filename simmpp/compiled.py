@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import TypeVar
@@ -26,8 +27,8 @@ _IMPORT = re.compile(r"^(?:from|import) (simmpp[\w.]*)", re.MULTILINE)
 
 def njit(function: Function) -> Function:
     """Compile ``function`` on first use; no fastmath: results must not depend on the CPU."""
-    numba.config.CACHE_DIR = str(_folder(function.__module__))
-    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+    with _kept_in(_folder(function.__module__)) as kept:
+        return numba.njit(cache=kept, error_model="numpy", nogil=True)(function)
 
 
 def njit_reading(function: Function) -> Function:
@@ -35,18 +36,41 @@ def njit_reading(function: Function) -> Function:
 
     A search of a tree that calls one for each box takes a third of the time.
     """
-    numba.config.CACHE_DIR = str(_folder(function.__module__))
-    return numba.njit(cache=True, error_model="numpy", nogil=True, _nrt=False)(function)
+    with _kept_in(_folder(function.__module__)) as kept:
+        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
 
 
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 
     def compile_now(function: Callable[..., object]) -> object:
-        numba.config.CACHE_DIR = str(_folder(function.__module__))
-        return numba.cfunc(signature, cache=True)(function)
+        with _kept_in(_folder(function.__module__)) as kept:
+            return numba.cfunc(signature, cache=kept)(function)
 
     return compile_now
+
+
+@contextmanager
+def _kept_in(folder: Path) -> Iterator[bool]:
+    """Tell numba where to keep what is decorated here; False if nothing can be kept there.
+
+    Left alone, numba would then keep it beside the source, under no digest. Other packages'
+    functions are kept where they were.
+    """
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        yield _is_writable(folder)
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
 
 
 def cache_folder() -> Path:
@@ -63,6 +87,11 @@ def source_digest(*modules: str) -> str:
     for name in sorted(set[str]().union(*map(_closure, modules))):
         digest.update(_source(name).encode())
     return digest.hexdigest()[:16]
+
+
+def keeps_code() -> bool:
+    """Can machine code be kept for the next run?"""
+    return _is_writable(_folder(__name__))
 
 
 def is_compiled(module: str) -> bool:

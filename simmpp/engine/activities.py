@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from simmpp.compiled import njit
 from simmpp.engine.dispatch import dispatch
+from simmpp.engine.fetched import admit_object, touch, unpin
 from simmpp.engine.layout import (
     BEGIN,
     DISPATCH,
@@ -40,15 +41,7 @@ from simmpp.engine.memory import (
 from simmpp.engine.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.sending import copy_ps, send
 from simmpp.engine.tables import find, give_back
-from simmpp.engine.waiting import (
-    admit_object,
-    file_ray,
-    is_in_memory,
-    note_exchange,
-    partner_of,
-    touch,
-    unpin,
-)
+from simmpp.engine.waiting import file_ray, is_in_memory, note_exchange, partner_of
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.work import CLOCK_LIMIT_PS
 

@@ -77,5 +77,5 @@ class Result:
 
     @property
     def objects_fetched(self) -> int:
-        """Objects sent as answers to requests."""
-        return self.messages_by_kind[OBJECT]
+        """Objects sent as answers to requests: one in each object message."""
+        return self.object_messages

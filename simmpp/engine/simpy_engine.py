@@ -56,8 +56,12 @@ class SimpyRun:
             return
         for me in range(len(self._inboxes)):
             self._environment.process(self._processing_element(me))
+        events = 0
         while self._environment.peek() != simpy.core.Infinity and not self._end.processed:
             self._environment.step()
+            events += 1
+            if self._progress is not None and events % _PROGRESS_EVERY == 0:
+                self._progress(self.state["rays_left"])
         if not self._ending:
             raise ModelError(starved(self.state))
 

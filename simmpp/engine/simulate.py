@@ -16,7 +16,7 @@ from simmpp.engine.state import State, new_state
 from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError, ModelError
 from simmpp.machine.machine import Machine
-from simmpp.machine.work import beyond_the_clock, check_transfers, total_compute_ps
+from simmpp.machine.work import beyond_the_clock, check_counters
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.rules import DataflowPolicy
@@ -27,6 +27,7 @@ ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {
     "simpy": SimpyRun,
     "compiled": CompiledRun,
 }
+DEFAULT_ENGINE = "compiled"
 READY_ORDERS = ("depth-first", "breadth-first")
 
 
@@ -36,7 +37,7 @@ def simulate(
     placement: Placement,
     policy: PolicyParameters,
     *,
-    engine: str = "simpy",
+    engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
     log: bool = False,
     record_tests: bool = False,
@@ -83,8 +84,7 @@ def _check(
     if ready_order not in READY_ORDERS:
         raise ConfigError(f"no order '{ready_order}'; expected one of {', '.join(READY_ORDERS)}")
     check_fit(workload, machine, placement, policy)
-    total_compute_ps(workload, machine)
-    check_transfers(workload, machine)
+    check_counters(workload, machine)
 
 
 def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str) -> Result:

@@ -13,7 +13,6 @@ from simmpp.engine.layout import (
     COPY,
     COUNTERS,
     LOAD_INFO,
-    MESSAGE,
     NONE,
     PARAMETERS,
     PIGGYBACK,
@@ -22,6 +21,7 @@ from simmpp.engine.layout import (
     Run,
 )
 from simmpp.engine.memory import pes, rays
+from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -37,7 +37,7 @@ class State:
     that are touched; the table of messages grows.
     """
 
-    def __init__(self, arrays: dict[str, NDArray[Any]], parameters: dict[str, int]) -> None:
+    def __init__(self, arrays: Arrays, parameters: dict[str, int]) -> None:
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
@@ -69,14 +69,19 @@ class State:
 
     def ensure_room(self) -> None:
         """See to it that all messages that one more step can send at most have a place."""
-        room = len(self.arrays["messages"]) - self.arrays["messages_marks"][USED]
+        room = len(self.messages) - self.arrays["messages_marks"][USED]
         most_sent = len(self.arrays["outbox"])
         if room < most_sent and room < self["rays_left"] + 2 * len(self.pes):
-            bigger = np.zeros(2 * len(self.messages) + most_sent, MESSAGE)
-            bigger[: len(self.messages)] = self.messages
-            self._put("messages", bigger)
+            self._grow("messages", most_sent)
         if self["logs"] and self["n_logged"] >= len(self.arrays["log"]) - 2:
-            self._put("log", np.concatenate([self.arrays["log"], self.arrays["log"]]))
+            self._grow("log", 0)
+
+    def _grow(self, name: str, more: int) -> None:
+        """Double an array, and a little more."""
+        before = self.arrays[name]
+        bigger = np.zeros(2 * len(before) + more, before.dtype)
+        bigger[: len(before)] = before
+        self._put(name, bigger)
 
 
 def new_state(
@@ -90,34 +95,38 @@ def new_state(
     log: bool = False,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
-    state = State(
-        _arrays(workload, machine, placement, parameters, record_tests),
-        _parameters(workload, machine, placement, parameters)
-        | {
-            "depth_first": ready_order == "depth-first",
-            "record_tests": record_tests,
-            "logs": log,
-        },
-    )
     everything = POLICIES[parameters.name].all_resident
-    state.pes["held_bytes"] = _resident_bytes(workload, placement, everything)
+    arrays = _own_arrays(workload, placement, parameters, workload.n_tests if record_tests else 0)
+    arrays |= resident_arrays(workload, placement, everything)
+    arrays |= _given_arrays(workload, machine, placement)
+    flags = {"depth_first": ready_order == "depth-first", "record_tests": record_tests, "logs": log}
+    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags)
+    state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
     return state
 
 
-def _arrays(
-    workload: Workload,
-    machine: Machine,
-    placement: Placement,
-    parameters: PolicyParameters,
-    record_tests: bool,
-) -> dict[str, NDArray[Any]]:
-    nb, n_objects, n_rays = machine.processors, workload.n_objects, workload.n_rays
+def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
+    costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
+    return {
+        "itinerary_offsets": workload.itinerary_offsets,
+        "itinerary_objects": workload.itinerary_objects,
+        "child_offsets": workload.child_offsets,
+        "object_bytes": workload.object_bytes,
+        "test_ps": machine.test.of_objects(workload),
+        "owners": placement.owners,
+        "copy_costs": np.array(costs, COPY),
+    }
+
+
+def _own_arrays(
+    workload: Workload, placement: Placement, parameters: PolicyParameters, n_recorded: int
+) -> Arrays:
+    nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     n_wants = 1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1))
     n_partners = 1 + min(nb * nb, 2 * workload.n_tests)
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     most_sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
-    recorded = workload.n_tests if record_tests else 0
     sizes = {
         "sent_by_kind": 4,
         "pes": nb,
@@ -140,87 +149,18 @@ def _arrays(
         "outbox": most_sent,
         "sort_keys": max(n_objects, nb),
         "sort_items": max(n_objects, nb),
-        "tested_rays": recorded,
-        "tested_objects": recorded,
+        "tested_rays": n_recorded,
+        "tested_objects": n_recorded,
         "log": 4096,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    for name in ("wants_marks", "partners_marks", "messages_marks"):
-        arrays[name] = np.array([NONE, 0])
     arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
-    return (
-        arrays
-        | _replicas(placement, n_objects)
-        | {
-            "itinerary_offsets": workload.itinerary_offsets,
-            "itinerary_objects": workload.itinerary_objects,
-            "child_offsets": workload.child_offsets,
-            "object_bytes": workload.object_bytes,
-            "test_ps": machine.test.of_objects(workload),
-            "owners": placement.owners,
-            "copy_costs": np.array(
-                [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)],
-                COPY,
-            ),
-        }
-    )
+    marks = ("wants_marks", "partners_marks", "messages_marks")
+    return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
 
 
 def _power_of_two(n: int) -> int:
     return 1 << max(4, (n - 1).bit_length())
-
-
-def _replicas(placement: Placement, n_objects: int) -> dict[str, NDArray[Any]]:
-    """Replicas as bits or as sorted ids, whichever takes less memory."""
-    row_bytes = _row_bytes(placement, n_objects)
-    if row_bytes == 0:
-        return {
-            "resident": np.zeros(0, np.uint8),
-            "replica_offsets": placement.replica_offsets,
-            "replica_objects": _sorted_rows(placement),
-        }
-    bits = np.zeros((placement.processors, row_bytes), np.uint8)
-    _set_bits(bits, placement.replica_offsets, placement.replica_objects)
-    nothing = np.zeros(0, np.int64)
-    return {
-        "resident": bits.reshape(-1),
-        "replica_offsets": nothing,
-        "replica_objects": nothing,
-    }
-
-
-def _row_bytes(placement: Placement, n_objects: int) -> int:
-    row_bytes = (n_objects + 7) // 8
-    as_ids = placement.replica_objects.nbytes
-    return row_bytes if row_bytes * placement.processors <= as_ids else 0
-
-
-def _sorted_rows(placement: Placement) -> NDArray[np.int32]:
-    """The replicas of each PE by their ids."""
-    holders = np.repeat(np.arange(placement.processors), np.diff(placement.replica_offsets))
-    return placement.replica_objects[np.lexsort((placement.replica_objects, holders))]
-
-
-@njit
-def _set_bits(
-    bits: NDArray[np.uint8], offsets: NDArray[np.int64], objects: NDArray[np.int32]
-) -> None:
-    for pe in range(offsets.size - 1):
-        for at in range(offsets[pe], offsets[pe + 1]):
-            bits[pe, objects[at] >> 3] |= np.uint8(1 << (objects[at] & 7))
-
-
-def _resident_bytes(
-    workload: Workload, placement: Placement, everything: bool
-) -> NDArray[np.int64]:
-    nb = placement.processors
-    if everything:
-        return np.full(nb, workload.object_bytes.sum(), np.int64)
-    total = np.zeros(nb, np.int64)
-    np.add.at(total, placement.owners, workload.object_bytes)
-    holders = np.repeat(np.arange(nb), np.diff(placement.replica_offsets))
-    np.add.at(total, holders, workload.object_bytes[placement.replica_objects])
-    return total
 
 
 def _parameters(
@@ -239,7 +179,7 @@ def _parameters(
         "n_objects": workload.n_objects,
         "bytes_per_s": min(limits, default=0),
         "transient": placement.transient,
-        "row_bytes": _row_bytes(placement, workload.n_objects),
+        "row_bytes": row_bytes(placement, workload.n_objects),
         "all_resident": policy.all_resident,
         "sends": policy.sends,
         "asks": policy.asks,

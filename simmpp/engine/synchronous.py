@@ -5,6 +5,9 @@ steps 3 to 6). In object dataflow each ray whose object is missing sends a reque
 ray dataflow each PE sends one message to every other PE, with rays or without. The network takes no
 time. Each PE has its own clock, advanced by the costs of one message, test or ray after the other.
 
+A step counts its rays and messages between all pairs of PEs in dense arrays (nb, nb), as the
+formulas do, so PEs are limited to MOST_PROCESSORS: at 4096 one such array takes 128 MiB.
+
 Within a step the model lets no PE wait: a message is at hand when its receiver gets to it.
 ``waits`` makes the receiver wait until the message has been sent, which shows how much that
 assumption hides.
@@ -20,6 +23,7 @@ from numpy.typing import NDArray
 
 from simmpp.engine.counts import Counter, Counts
 from simmpp.engine.synchronous_step import World, needs, new_step, next_rays, object_step, ray_step
+from simmpp.errors import ConfigError
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.network import transfer_ps
@@ -28,6 +32,7 @@ from simmpp.placement.placement import Placement
 from simmpp.workload.lockstep import steps_of
 from simmpp.workload.workload import Workload
 
+MOST_PROCESSORS = 4096
 Dataflow = Literal["object", "ray"]
 DATAFLOWS: tuple[Dataflow, ...] = ("object", "ray")
 
@@ -56,8 +61,9 @@ def synchronous(
 ) -> SynchronousResult:
     """Run a workload step by step.
 
-    Raises ConfigError if tests and messages may exceed the clock.
+    Raises ConfigError for more than MOST_PROCESSORS, or if tests and messages may exceed the clock.
     """
+    _check_processors(machine.processors)
     _check_clock(workload, machine, dataflow)
     world = _world(workload, machine, placement, waits)
     nb = machine.processors
@@ -76,6 +82,14 @@ def synchronous(
         counter.add(step.tests, step.ended, step.r)
         times.append(step.clocks)
     return SynchronousResult(np.array(times, np.int64).reshape(-1, nb), counter.counts())
+
+
+def _check_processors(nb: int) -> None:
+    if nb > MOST_PROCESSORS:
+        raise ConfigError(
+            f"processors: {nb}, expected at most {MOST_PROCESSORS} where the machine runs step by "
+            "step (analytical-measured): each step counts rays between all pairs of PEs"
+        )
 
 
 def _check_clock(workload: Workload, machine: Machine, dataflow: Dataflow) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.config import Config, described, with_key
+from simmpp.sweep.config import Config, described
 from simmpp.sweep.grid import GridPoint, further_columns, grid
 from simmpp.sweep.outcome import Outcome
 from simmpp.sweep.provenance import result_versions
@@ -17,8 +17,6 @@ from simmpp.sweep.tables import Row
 from simmpp.sweep.task import Task, task_of
 from simmpp.sweep.workloads import name_and_digest
 
-ENGINE = "compiled"
-"""What runs the points of a sweep unless the configuration says."""
 IRRELEVANT = ("check",)
 """Keys that decide no row."""
 
@@ -99,8 +97,6 @@ def plan(config: Config) -> Plan:
     settings = config.settings
     if settings.tolerance is not None:
         raise ConfigError("tolerance: expected none here: a sweep takes the seeds that it is given")
-    if "engine" not in settings.model_fields_set:
-        config = with_key(config, "engine", ENGINE)
     workloads: dict[str, tuple[str, str]] = {}
     points: list[PlannedPoint] = []
     for point in grid(config):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from simmpp.compiled import is_compiled
-from simmpp.sweep.plan import ENGINE
+from simmpp.engine.simulate import DEFAULT_ENGINE
 from simmpp.sweep.warm import warm_up
 from simmpp.sweep.worker import run_task as run_task
 
 if is_compiled("simmpp.engine.compiled_engine"):  # else the workers compile, and can be interrupted
-    warm_up(ENGINE)
+    warm_up(DEFAULT_ENGINE)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, field_validator, model_validator
 
-from simmpp.engine.simulate import ENGINES, READY_ORDERS
+from simmpp.engine.simulate import DEFAULT_ENGINE, ENGINES, READY_ORDERS
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.presets import preset_names
 from simmpp.policy.parameters import PolicyParameters
@@ -184,7 +184,7 @@ class Settings(Strict):
         default="simulate", description="simulation, or the paper's analytical model"
     )
     engine: Annotated[str, *one_of(*ENGINES)] = Field(
-        default="simpy", description="event loop of the simulation"
+        default=DEFAULT_ENGINE, description="event loop: compiled, or the readable one in SimPy"
     )
     sweep: Annotated[dict[str, list[object]], parsed_by(values.axes), Expect(values.AXES)] = Field(
         default={}, description="values of dotted keys, such as memory.fraction: [0.1, 0.5, 1]"

@@ -38,7 +38,7 @@ def test_every_object_has_one_owner_and_parts_are_even(
     counts = np.bincount(found, minlength=processors)
     assert len(found) == n_objects
     assert len(counts) == processors
-    assert counts.max() - counts.min() <= (1 if rule != "bisection" else 2)
+    assert counts.max() - counts.min() <= 1
 
 
 def test_bisection_cuts_the_longest_axis_at_the_median() -> None:

@@ -35,7 +35,7 @@ def test_everything_but_the_scene_has_a_default() -> None:
     assert config.machine_for(64).name == "t3e"
     settings = config.settings
     assert (settings.processors, settings.seeds, settings.tolerance) == (64, (0,), None)
-    assert (settings.method, settings.engine) == ("simulate", "simpy")
+    assert (settings.method, settings.engine) == ("simulate", "compiled")
 
 
 def test_everything_can_be_said() -> None:
