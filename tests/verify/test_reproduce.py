@@ -7,14 +7,15 @@ from pathlib import Path
 
 import pytest
 
+from simmpp.report.claims import judge
 from simmpp.report.figures import FIGURES, PERCENT
 from simmpp.report.measured import Measured
 from simmpp.report.reproduce import EXPERIMENTS, MODEL, Reproduction, configuration, reproduce
-from simmpp.sweep.config import load_config
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.profits import profit_rows
-from simmpp.sweep.sweep import Watcher
-from simmpp.sweep.tables import Row
+from simmpp.sweeps.config import load_config
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.profits import profit_rows
+from simmpp.sweeps.sweep import Watcher
+from simmpp.sweeps.tables import Row
 
 PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
 CLAIMS = ["F2a", "F2b", "F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2"]
@@ -117,3 +118,12 @@ def test_experiments_have_eight_seeds_and_nothing_of_their_own(name: str, tmp_pa
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])
 def test_published_configurations_are_the_packages(name: str) -> None:
     assert (PUBLISHED / f"{name}.yaml").read_text(encoding="utf-8") == configuration(name)
+
+
+def test_published_claims_follow_from_the_published_rows() -> None:
+    names = ("figure3", "figure4", "figure6")
+    measured = (Measured(rows_of(PUBLISHED / f"{name}.csv")) for name in names)
+    with open(PUBLISHED / "claims.csv", encoding="utf-8", newline="") as file:
+        published = [Verdict(**row) for row in csv.DictReader(file)]
+    assert published[2:] == judge(Evidence(*measured))
+    assert [each.claim for each in published] == CLAIMS
