@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.report.profit import profits
     from simmpp.scene.load import load_scene
+    from simmpp.sweeps.sweep import run_sweep as sweep
+    from simmpp.workload.exchange import export_workload, import_workload
     from simmpp.workload.picture import Picture
     from simmpp.workload.tracer import trace
 
@@ -34,11 +36,14 @@ _HOME = {
     "PlacementRules": "simmpp.placement.placement:PlacementRules",
     "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
     "Result": "simmpp.engine.result:Result",
+    "export_workload": "simmpp.workload.exchange:export_workload",
+    "import_workload": "simmpp.workload.exchange:import_workload",
     "load_scene": "simmpp.scene.load:load_scene",
     "make_machine": "simmpp.machine.presets:machine",
     "place": "simmpp.placement.place:place",
     "profits": "simmpp.report.profit:profits",
     "simulate": "simmpp.engine.simulate:simulate",
+    "sweep": "simmpp.sweeps.sweep:run_sweep",
     "trace": "simmpp.workload.tracer:trace",
 }
 
@@ -48,11 +53,14 @@ __all__ = [
     "PlacementRules",
     "PolicyParameters",
     "Result",
+    "export_workload",
+    "import_workload",
     "load_scene",
     "make_machine",
     "place",
     "profits",
     "simulate",
+    "sweep",
     "trace",
 ]
 

@@ -14,7 +14,7 @@ import click
 if TYPE_CHECKING:
     from simmpp.report.baseline import Sweep
     from simmpp.report.compare import Move
-    from simmpp.sweep.config import Config
+    from simmpp.sweeps.config import Config
 
 MOVED = 1
 MOVES_SHOWN = 25
@@ -67,7 +67,7 @@ def check_command(
     from simmpp.commands.files import folder
     from simmpp.errors import ConfigError
     from simmpp.report.baseline import baseline_folder, read_baseline
-    from simmpp.sweep.config import load_config
+    from simmpp.sweeps.config import load_config
 
     if update and overrides:
         raise ConfigError("expected --update or --set: a baseline is of CONFIG as it is")
@@ -91,7 +91,7 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
     from simmpp.commands.sweep import available_cores
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.report.baseline import read_sweep
-    from simmpp.sweep.sweep import run_sweep
+    from simmpp.sweeps.sweep import run_sweep
 
     with progress_of_sweep() as watcher:
         run_sweep(
@@ -177,7 +177,7 @@ def _write(found: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, o
     from simmpp.report.baseline import PROFITS, RECORD, RESULTS
     from simmpp.report.compare import lines
     from simmpp.report.plots import overlay
-    from simmpp.sweep.tables import write_csv
+    from simmpp.sweeps.tables import write_csv
 
     for name in (PROFITS, RESULTS, RECORD):
         shutil.copyfile(obtained / name, out / name)

@@ -9,7 +9,7 @@ import click
 
 if TYPE_CHECKING:
     from simmpp.model.analytical import Makespans
-    from simmpp.sweep.config import Config
+    from simmpp.sweeps.config import Config
     from simmpp.workload.workload import Workload
 
 
@@ -56,7 +56,7 @@ def model_command(
     from simmpp.commands.terminal import notice, output, table
     from simmpp.commands.tracing import workload as workload_of
     from simmpp.report.model import ANALYTICAL, MEASURED, model_grid, model_times, rows_of
-    from simmpp.sweep.config import load_config
+    from simmpp.sweeps.config import load_config
 
     config = load_config(config_path, overrides)
     folder(out, "--out")

@@ -11,8 +11,8 @@ import click
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
-    from simmpp.sweep.config import Config
-    from simmpp.sweep.point import Point, PolicyRun
+    from simmpp.sweeps.config import Config
+    from simmpp.sweeps.point import Point, PolicyRun
 
 VERIFY_FAILED = 1
 
@@ -48,7 +48,7 @@ def run_command(
     reference of the profits and the replicated scene as the ceiling, if they are not named.
     """
     from simmpp.commands.files import folder, writable
-    from simmpp.sweep.config import load_config
+    from simmpp.sweeps.config import load_config
 
     if engine is not None:
         overrides = (*overrides, f"engine={engine}")
@@ -63,7 +63,7 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
     from simmpp.report.summary import summary
-    from simmpp.sweep.point import make_point
+    from simmpp.sweeps.point import make_point
 
     if picture or verify:
         _require_scene(config, "--picture" if picture else "--verify")
@@ -92,7 +92,7 @@ def _require_scene(config: Config, option: str) -> None:
 def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
-    from simmpp.sweep.point import run_point
+    from simmpp.sweeps.point import run_point
 
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
@@ -108,7 +108,7 @@ def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> Non
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
     from simmpp.report.record import record, write_record
-    from simmpp.sweep.rows import row, write_rows
+    from simmpp.sweeps.rows import row, write_rows
 
     write_record(record(point, runs), out / "run.json")
     write_rows([row(point, run) for run in runs], out / "results.csv")

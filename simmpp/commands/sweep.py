@@ -13,7 +13,7 @@ import click
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from simmpp.sweep.sweep import SweepResult
+    from simmpp.sweeps.sweep import SweepResult
 
 POINTS_FAILED = 1
 PROFITS_SHOWN = 40
@@ -63,7 +63,7 @@ def sweep_command(
     continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
     """
     from simmpp.errors import ConfigError
-    from simmpp.sweep.processes import start_server
+    from simmpp.sweeps.processes import start_server
 
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
@@ -74,8 +74,8 @@ def sweep_command(
     from simmpp.commands.files import folder
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation
-    from simmpp.sweep.config import load_config
-    from simmpp.sweep.sweep import run_sweep
+    from simmpp.sweeps.config import load_config
+    from simmpp.sweeps.sweep import run_sweep
 
     if engine is not None:
         overrides = (*overrides, f"engine={engine}")
@@ -119,7 +119,7 @@ def _table(result: SweepResult) -> Table:
     """The first profits; the reference's own say nothing."""
     from rich.table import Table
 
-    from simmpp.sweep.point import REFERENCE
+    from simmpp.sweeps.point import REFERENCE
 
     profits = result.profits[result.profits["policy"] != REFERENCE]
     names = list(profits.columns[: profits.columns.get_loc("n")])

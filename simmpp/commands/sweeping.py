@@ -11,10 +11,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from simmpp.commands.terminal import notice
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.plan import Plan
-from simmpp.sweep.profits import best_policy
-from simmpp.sweep.sweep import Watcher
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.plan import Plan
+from simmpp.sweeps.profits import best_policy
+from simmpp.sweeps.sweep import Watcher
 
 LINES = 10
 """Lines that a pipe gets in all."""

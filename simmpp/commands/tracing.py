@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 from simmpp.commands.terminal import announce_compilation, notice, progress_bars
 from simmpp.scene.scene import Scene
-from simmpp.sweep.config import Config
-from simmpp.sweep.workloads import workload_of
+from simmpp.sweeps.config import Config
+from simmpp.sweeps.workloads import workload_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
 from simmpp.workload.tracer import Progress

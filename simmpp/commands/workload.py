@@ -36,7 +36,7 @@ def workload_command(
     from simmpp.commands.files import writable
     from simmpp.commands.tracing import workload
     from simmpp.errors import ConfigError
-    from simmpp.sweep.config import config_from_mapping, load_config
+    from simmpp.sweeps.config import config_from_mapping, load_config
     from simmpp.workload.exchange import SUFFIXES, export_workload, is_workload
 
     writable(export, "--export")

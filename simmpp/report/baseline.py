@@ -18,11 +18,11 @@ from typing import Any
 
 from simmpp.errors import ConfigError
 from simmpp.report.compare import Tables
-from simmpp.sweep.config import Config, config_from_mapping, described
-from simmpp.sweep.profits import profit_columns
-from simmpp.sweep.provenance import difference
-from simmpp.sweep.rows import COLUMNS
-from simmpp.sweep.tables import replaced, write_text
+from simmpp.sweeps.config import Config, config_from_mapping, described
+from simmpp.sweeps.profits import profit_columns
+from simmpp.sweeps.provenance import difference
+from simmpp.sweeps.rows import COLUMNS
+from simmpp.sweeps.tables import replaced, write_text
 
 PROFITS, RESULTS, RECORD = "profits.csv", "results.csv", "run.json"
 DIGESTS = "sha256"

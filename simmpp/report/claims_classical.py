@@ -7,7 +7,7 @@ import math
 from simmpp.report.measured import RAY, mean
 from simmpp.report.values import Evidence, cases, partitioned, ray_over_object, span
 from simmpp.report.verdict import Case, Verdict, verdict
-from simmpp.sweep.point import REFERENCE
+from simmpp.sweeps.point import REFERENCE
 
 CLASSICAL = (REFERENCE, RAY)
 FEW, MANY = 8, 128

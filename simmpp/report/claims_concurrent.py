@@ -30,7 +30,7 @@ from simmpp.report.values import (
     span,
 )
 from simmpp.report.verdict import Case, Verdict, verdict
-from simmpp.sweep.point import REFERENCE
+from simmpp.sweeps.point import REFERENCE
 
 MOUNTAIN5 = "mountain:5"
 FEW, MANY = 32, 128

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from simmpp.sweep.rows import NUMBERS
+from simmpp.sweeps.rows import NUMBERS
 
 Row = Mapping[str, str]
 """A line of a CSV file, cells as they are written."""

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from statistics import fmean
 from typing import NamedTuple
 
-from simmpp.sweep.point import REFERENCE
-from simmpp.sweep.profits import ratio
-from simmpp.sweep.tables import Row
+from simmpp.sweeps.point import REFERENCE
+from simmpp.sweeps.profits import ratio
+from simmpp.sweeps.tables import Row
 
 CONCURRENT, RAY, REPLICATED = "concurrent", "ray", "replicated"
 MAKESPAN, MESSAGES = "makespan_ps", "messages"

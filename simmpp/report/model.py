@@ -17,9 +17,9 @@ from simmpp.model.border import FRACTIONS, OBJECT, PROCESSORS, RAY, TIE, winners
 from simmpp.model.costs import Costs, costs_of
 from simmpp.model.measured import measured_makespan_ps
 from simmpp.placement.place import place
-from simmpp.sweep.axes import axes_of
-from simmpp.sweep.config import Config, point_at
-from simmpp.sweep.tables import Row, write_csv
+from simmpp.sweeps.axes import axes_of
+from simmpp.sweeps.config import Config, point_at
+from simmpp.sweeps.tables import Row, write_csv
 from simmpp.workload.workload import Workload
 
 ANALYTICAL, MEASURED = "analytical", "analytical-measured"

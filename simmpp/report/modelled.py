@@ -18,7 +18,7 @@ from simmpp.report.model import (
     write_model,
 )
 from simmpp.report.verdict import DOES_NOT, HOLDS, Verdict
-from simmpp.sweep.config import Config
+from simmpp.sweeps.config import Config
 from simmpp.units import format_ps
 from simmpp.workload.workload import Workload
 

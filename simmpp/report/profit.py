@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from simmpp.engine.result import Result
 from simmpp.errors import ConfigError
-from simmpp.sweep.profits import ratio as ratio
+from simmpp.sweeps.profits import ratio as ratio
 
 REFERENCE = "object"
 

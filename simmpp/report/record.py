@@ -13,9 +13,9 @@ from typing import Any
 
 from simmpp.report.profit import ratio
 from simmpp.report.summary import imbalance, utilisation
-from simmpp.sweep.config import described
-from simmpp.sweep.point import Point, PolicyRun, ceiling_of, reference_of
-from simmpp.sweep.rows import numbers, row
+from simmpp.sweeps.config import described
+from simmpp.sweeps.point import Point, PolicyRun, ceiling_of, reference_of
+from simmpp.sweeps.rows import numbers, row
 
 LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh")
 

@@ -17,15 +17,15 @@ from simmpp.report.modelled import reproduce_figure2
 from simmpp.report.panels import draw
 from simmpp.report.values import Evidence
 from simmpp.report.verdict import COLUMNS, Verdict
-from simmpp.sweep.config import Config, load_config
-from simmpp.sweep.crew import crew_for
-from simmpp.sweep.journal import Journal
-from simmpp.sweep.plan import Plan, plan
-from simmpp.sweep.provenance import all_versions, result_versions
-from simmpp.sweep.rows import result_columns
-from simmpp.sweep.sweep import Watcher, run_pending
-from simmpp.sweep.tables import Row, write_csv, write_text
-from simmpp.sweep.workloads import workload_of
+from simmpp.sweeps.config import Config, load_config
+from simmpp.sweeps.crew import crew_for
+from simmpp.sweeps.journal import Journal
+from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.provenance import all_versions, result_versions
+from simmpp.sweeps.rows import result_columns
+from simmpp.sweeps.sweep import Watcher, run_pending
+from simmpp.sweeps.tables import Row, write_csv, write_text
+from simmpp.sweeps.workloads import workload_of
 
 EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
 """Stems of configurations, of the rows they give and of the figures that show them."""

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from simmpp.report.profit import ratio
-from simmpp.sweep.point import Point, PolicyRun, ceiling_of, reference_of
+from simmpp.sweeps.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.units import format_bytes, format_ps
 
 Cell = Callable[[PolicyRun], str]

@@ -19,17 +19,17 @@ from simmpp.engine.simulate import simulate
 from simmpp.errors import ConfigError, ModelError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
-from simmpp.sweep import plan as planning
-from simmpp.sweep import worker
-from simmpp.sweep.config import config_from_mapping, with_key
-from simmpp.sweep.crew import Crew
-from simmpp.sweep.execute import outcomes
-from simmpp.sweep.plan import Plan, plan
-from simmpp.sweep.point import make_point, run_point
-from simmpp.sweep.rows import in_order, integers, result_columns, row
-from simmpp.sweep.sweep import run_sweep
-from simmpp.sweep.task import canonical
-from simmpp.sweep.workloads import workload_of
+from simmpp.sweeps import plan as planning
+from simmpp.sweeps import worker
+from simmpp.sweeps.config import config_from_mapping, with_key
+from simmpp.sweeps.crew import Crew
+from simmpp.sweeps.execute import outcomes
+from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.point import make_point, run_point
+from simmpp.sweeps.rows import in_order, integers, result_columns, row
+from simmpp.sweeps.sweep import run_sweep
+from simmpp.sweeps.task import canonical
+from simmpp.sweeps.workloads import workload_of
 
 CONFIG = {
     "scene": "tetra:2",

@@ -13,8 +13,8 @@ import pytest
 
 from simmpp.compiled import cache_folder
 from simmpp.errors import ConfigError
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.sweep import Watcher, run_sweep
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.sweep import Watcher, run_sweep
 
 CONFIG = {
     "scene": "mountain:4",
@@ -89,7 +89,7 @@ def test_a_killed_worker_changes_nothing(cluster: Cluster, tmp_path: Path) -> No
 
 
 def test_no_cluster_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simmpp.sweep.crew.CONNECT_S", 1)
+    monkeypatch.setattr("simmpp.sweeps.crew.CONNECT_S", 1)
     for address in ("tcp://127.0.0.1:9", "nonsense://x", ""):
         with pytest.raises(ConfigError, match="--cluster: value ") as error:
             run_sweep(CONFIG, cluster=address)

@@ -7,11 +7,11 @@ from concurrent.futures.process import BrokenProcessPool
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.sweep.config import config_from_mapping
-from simmpp.sweep.crew import Crew
-from simmpp.sweep.execute import WORKER_DIED, outcomes
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.task import Task
+from simmpp.sweeps.config import config_from_mapping
+from simmpp.sweeps.crew import Crew
+from simmpp.sweeps.execute import WORKER_DIED, outcomes
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.task import Task
 
 
 class Fragile(Executor):

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from simmpp.compiled import cache_folder
-from simmpp.sweep.journal import FILE
-from simmpp.sweep.sweep import run_sweep
+from simmpp.sweeps.journal import FILE
+from simmpp.sweeps.sweep import run_sweep
 
 KILLS = int(os.environ.get("SIMMPP_KILLS", "3"))
 SEED = int(os.environ.get("SIMMPP_KILLS_SEED", "0"))

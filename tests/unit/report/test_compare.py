@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from simmpp.report.compare import Move, Tables, lines, moves, percent, summary
-from simmpp.sweep.profits import profit_columns
-from simmpp.sweep.rows import COLUMNS
+from simmpp.sweeps.profits import profit_columns
+from simmpp.sweeps.rows import COLUMNS
 
 TWO_PERCENT = {"time_profit": Fraction(2, 100)}
 

@@ -14,7 +14,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from typing import Any
 
-from simmpp.sweep.crew import Crew
+from simmpp.sweeps.crew import Crew
 
 METHOD = "spawn" if sys.platform == "win32" else "forkserver"
 """A fork of this process would copy the locks of its threads."""
@@ -46,7 +46,7 @@ def start_server() -> None:
     """
     if METHOD == "forkserver":
         context: Any = multiprocessing.get_context(METHOD)
-        context.set_forkserver_preload(["simmpp.sweep.preload"])
+        context.set_forkserver_preload(["simmpp.sweeps.preload"])
         with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
             forkserver.ensure_running()
 

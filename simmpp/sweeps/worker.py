@@ -11,13 +11,13 @@ from typing import Generic, TypeVar
 from simmpp.engine.simulate import simulate
 from simmpp.errors import SimmppError
 from simmpp.policy.table import POLICIES
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.point import Point, make_point
-from simmpp.sweep.provenance import difference, result_versions
-from simmpp.sweep.rows import integers
-from simmpp.sweep.task import Task
-from simmpp.sweep.warm import warm_up
-from simmpp.sweep.workloads import shared_workload
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.point import Point, make_point
+from simmpp.sweeps.provenance import difference, result_versions
+from simmpp.sweeps.rows import integers
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.warm import warm_up
+from simmpp.sweeps.workloads import shared_workload
 from simmpp.workload.workload import Workload
 
 Made = TypeVar("Made")

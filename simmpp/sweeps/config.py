@@ -14,10 +14,10 @@ from simmpp.machine.presets import machine, torus_shape
 from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
 from simmpp.policy.parameters import LoadInfo, PolicyParameters
 from simmpp.strict import Place, misplaced, structure
-from simmpp.sweep.axes import Axis, axes_of
-from simmpp.sweep.overrides import Places, override, set_key
-from simmpp.sweep.scene_settings import FILES
-from simmpp.sweep.settings import PolicySettings, Settings
+from simmpp.sweeps.axes import Axis, axes_of
+from simmpp.sweeps.overrides import Places, override, set_key
+from simmpp.sweeps.scene_settings import FILES
+from simmpp.sweeps.settings import PolicySettings, Settings
 from simmpp.units import shown
 from simmpp.workload.picture import Picture, Samples
 from simmpp.yamlfile import KeyPath, read_yaml

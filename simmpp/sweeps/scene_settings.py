@@ -10,7 +10,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from simmpp.errors import ConfigError
 from simmpp.scene.spd.generators import find_generator, known_names
 from simmpp.strict import Expect, Strict, Text, integer, mistake, one_of, parsed_by
-from simmpp.sweep import values
+from simmpp.sweeps import values
 from simmpp.workload.exchange import is_workload
 
 SOURCES = ("spd", "nff", "mesh", "workload")

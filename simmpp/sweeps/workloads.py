@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from simmpp.errors import WorkloadError
 from simmpp.scene.load import load_scene
-from simmpp.sweep.config import Config
+from simmpp.sweeps.config import Config
 from simmpp.workload.digest import digest_of
 from simmpp.workload.exchange import import_workload
 from simmpp.workload.store import cached_path, open_workload, save, workload_for

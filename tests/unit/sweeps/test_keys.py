@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from simmpp.sweep.keys import key_table, with_table
+from simmpp.sweeps.keys import key_table, with_table
 
 README = Path(__file__).parents[3] / "README.md"
 
@@ -17,4 +17,4 @@ def test_every_key_says_what_it_takes_and_means() -> None:
 
 def test_the_readme_has_the_present_table() -> None:
     text = README.read_text(encoding="utf-8")
-    assert with_table(text) == text, "run: python -m simmpp.sweep.keys README.md"
+    assert with_table(text) == text, "run: python -m simmpp.sweeps.keys README.md"

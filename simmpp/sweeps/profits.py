@@ -9,9 +9,9 @@ import math
 from collections.abc import Iterable, Sequence
 from statistics import fmean
 
-from simmpp.sweep.point import REFERENCE
-from simmpp.sweep.rows import KEYS
-from simmpp.sweep.tables import Row, sort_key
+from simmpp.sweeps.point import REFERENCE
+from simmpp.sweeps.rows import KEYS
+from simmpp.sweeps.tables import Row, sort_key
 
 CONFIDENCE = 0.95
 """Of the intervals from low to high."""

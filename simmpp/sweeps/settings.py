@@ -24,8 +24,8 @@ from simmpp.strict import (
     one_of,
     parsed_by,
 )
-from simmpp.sweep import values
-from simmpp.sweep.scene_settings import SceneSettings, long_scene
+from simmpp.sweeps import values
+from simmpp.sweeps.scene_settings import SceneSettings, long_scene
 
 Processors = Annotated[int, *integer(1, MOST_PROCESSORS)]
 RayCount = Annotated[int, *integer(1, values.MOST_RAYS)]

@@ -1,7 +1,7 @@
 """The table of configuration keys, as Markdown, made from the settings themselves.
 
-``python -m simmpp.sweep.keys`` prints it; ``python -m simmpp.sweep.keys README.md`` puts it between
-the markers of a file.
+``python -m simmpp.sweeps.keys`` prints it; ``python -m simmpp.sweeps.keys README.md`` puts it
+between the markers of a file.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pydantic import BaseModel
 
 from simmpp.machine.constants import CopiesConstants
 from simmpp.strict import expectation, submodel
-from simmpp.sweep.settings import Settings
+from simmpp.sweeps.settings import Settings
 
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
 HEADER = "| key | default | takes | meaning |\n|---|---|---|---|\n"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from simmpp.sweep.tables import write_csv, write_parquet, write_text
+from simmpp.sweeps.tables import write_csv, write_parquet, write_text
 
 COLUMNS = ("whole", "real", "mixed", "word", "nothing", "gaps")
 ROWS = [

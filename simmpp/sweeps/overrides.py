@@ -8,8 +8,8 @@ from typing import Any
 from simmpp.errors import ConfigError
 from simmpp.machine.constants import long_test
 from simmpp.strict import Place, submodel, unknown
-from simmpp.sweep.scene_settings import long_scene
-from simmpp.sweep.settings import Settings, long_policies
+from simmpp.sweeps.scene_settings import long_scene
+from simmpp.sweeps.settings import Settings, long_policies
 from simmpp.yamlfile import KeyPath, parse_yaml
 
 Places = dict[KeyPath, Place]

@@ -11,19 +11,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from simmpp.sweep.config import Config, config_from_mapping, load_config, with_key
-from simmpp.sweep.crew import Crew, crew_for
-from simmpp.sweep.execute import outcomes as execute
-from simmpp.sweep.journal import Journal, Results
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.plan import Plan, plan
-from simmpp.sweep.profits import profit_columns, profit_rows
-from simmpp.sweep.provenance import all_versions
-from simmpp.sweep.rows import result_columns
-from simmpp.sweep.tables import Row, as_arrow, write_csv, write_parquet, write_text
-from simmpp.sweep.task import Task
-from simmpp.sweep.worker import keep_workload
-from simmpp.sweep.workloads import cache_workload
+from simmpp.sweeps.config import Config, config_from_mapping, load_config, with_key
+from simmpp.sweeps.crew import Crew, crew_for
+from simmpp.sweeps.execute import outcomes as execute
+from simmpp.sweeps.journal import Journal, Results
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.profits import profit_columns, profit_rows
+from simmpp.sweeps.provenance import all_versions
+from simmpp.sweeps.rows import result_columns
+from simmpp.sweeps.tables import Row, as_arrow, write_csv, write_parquet, write_text
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import keep_workload
+from simmpp.sweeps.workloads import cache_workload
 
 if TYPE_CHECKING:
     import pandas

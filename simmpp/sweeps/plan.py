@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.config import Config, described
-from simmpp.sweep.grid import GridPoint, further_columns, grid
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.provenance import result_versions
-from simmpp.sweep.rows import KEYS, NUMBERS, in_order
-from simmpp.sweep.tables import Row
-from simmpp.sweep.task import Task, task_of
-from simmpp.sweep.workloads import name_and_digest
+from simmpp.sweeps.config import Config, described
+from simmpp.sweeps.grid import GridPoint, further_columns, grid
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.provenance import result_versions
+from simmpp.sweeps.rows import KEYS, NUMBERS, in_order
+from simmpp.sweeps.tables import Row
+from simmpp.sweeps.task import Task, task_of
+from simmpp.sweeps.workloads import name_and_digest
 
 IRRELEVANT = ("check",)
 """Keys that decide no row."""

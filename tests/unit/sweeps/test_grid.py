@@ -7,11 +7,11 @@ import pytest
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweep.axes import axes_of
-from simmpp.sweep.config import config_from_mapping
-from simmpp.sweep.grid import GridPoint, further_columns, grid
-from simmpp.sweep.plan import plan
-from simmpp.sweep.task import canonical
+from simmpp.sweeps.axes import axes_of
+from simmpp.sweeps.config import config_from_mapping
+from simmpp.sweeps.grid import GridPoint, further_columns, grid
+from simmpp.sweeps.plan import plan
+from simmpp.sweeps.task import canonical
 
 BASE = {"scene": "tetra:1", "picture": {"resolution": 4}, "policy": "ray"}
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from simmpp.errors import ConfigError
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweep.config import config_from_mapping, load_config
-from simmpp.sweep.settings import Settings
+from simmpp.sweeps.config import config_from_mapping, load_config
+from simmpp.sweeps.settings import Settings
 from simmpp.workload.picture import Picture
 
 

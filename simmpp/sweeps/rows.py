@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.engine.result import Result
-from simmpp.sweep.point import Point, PolicyRun
-from simmpp.sweep.tables import Row, sort_key, write_csv
+from simmpp.sweeps.point import Point, PolicyRun
+from simmpp.sweeps.tables import Row, sort_key, write_csv
 
 KEYS = ("scene", "processors", "fraction", "effective_fraction", "policy", "seed")
 NUMBERS = (

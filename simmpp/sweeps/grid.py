@@ -9,9 +9,9 @@ from itertools import product
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweep.axes import axes_of
-from simmpp.sweep.config import Config, described, point_at
-from simmpp.sweep.point import REFERENCE
+from simmpp.sweeps.axes import axes_of
+from simmpp.sweeps.config import Config, described, point_at
+from simmpp.sweeps.point import REFERENCE
 
 OWN_COLUMNS = ("scene", "processors", "memory.fraction", "policy", "method")
 """Keys that have a column in every table of rows, swept or not."""

@@ -10,8 +10,8 @@ from typing import Any
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
-from simmpp.sweep.config import Config
-from simmpp.sweep.grid import GridPoint
+from simmpp.sweeps.config import Config
+from simmpp.sweeps.grid import GridPoint
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.axes import axes_of
+from simmpp.sweeps.axes import axes_of
 from simmpp.units import picoseconds, share, shown
 
 MOST_RAYS = 2**31 - 1

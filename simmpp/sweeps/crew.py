@@ -79,7 +79,7 @@ def crew_for(workers: int, cluster: str | None) -> Crew:
 
     Raises ConfigError if there is no such cluster.
     """
-    from simmpp.sweep.processes import Processes  # is a Crew itself
+    from simmpp.sweeps.processes import Processes  # is a Crew itself
 
     if cluster is not None:
         return Cluster(cluster)

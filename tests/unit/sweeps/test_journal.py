@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.journal import FILE, Journal
-from simmpp.sweep.outcome import Outcome
+from simmpp.sweeps.journal import FILE, Journal
+from simmpp.sweeps.outcome import Outcome
 
 IDENTITY = {"versions": {"numpy": "2.0"}, "config": {"processors": 8, "seeds": [0, 1]}}
 OUTCOMES = [Outcome("a", {"messages": 3}, 0.5, 0.25), Outcome("b", error="no"), Outcome("c")]

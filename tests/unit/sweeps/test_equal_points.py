@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simmpp.sweep.sweep import run_sweep
+from simmpp.sweeps.sweep import run_sweep
 
 SETTINGS = {
     "scene": "tetra:2",

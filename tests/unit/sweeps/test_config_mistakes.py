@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.config import load_config
+from simmpp.sweeps.config import load_config
 
 A_SHARE = "expected a share from 0 to 1, such as 0.1, 10% or 1/64"
 PRODUCT = "expected three integers whose product is processors ="

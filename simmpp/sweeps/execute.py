@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.crew import Crew
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.provenance import result_versions
-from simmpp.sweep.task import Task
-from simmpp.sweep.worker import run_task
+from simmpp.sweeps.crew import Crew
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.provenance import result_versions
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
 
 WORKER_DIED = "the worker died (out of memory?)"
 

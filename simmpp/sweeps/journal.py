@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from simmpp.errors import ConfigError
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.provenance import difference
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.provenance import difference
 
 FILE = "points.jsonl"
 FORMAT = 1

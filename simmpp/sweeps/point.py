@@ -15,7 +15,7 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
-from simmpp.sweep.config import Config
+from simmpp.sweeps.config import Config
 from simmpp.workload.workload import Workload
 
 REFERENCE, CEILING = "object", "replicated"

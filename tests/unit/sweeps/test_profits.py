@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from simmpp.sweep.profits import best_policy, interval, profit_columns, profit_rows
-from simmpp.sweep.tables import Row
+from simmpp.sweeps.profits import best_policy, interval, profit_columns, profit_rows
+from simmpp.sweeps.tables import Row
 
 
 def row(policy: str, seed: int, makespan_ps: int, messages: int, **more: object) -> Row:
