@@ -124,8 +124,8 @@ def _split(boxes: Floats, order: Ints, scratch: Ints, low: int, high: int) -> in
     """Reorder order[low:high] about the cheapest plane between bins; its position."""
     axis, start, extent = _longest_axis(boxes, order, low, high)
     middle = low
-    if extent > 0.0:
-        per_bin = BINS * (1.0 - 2.0**-40) / extent
+    per_bin = BINS * (1.0 - 2.0**-40) / extent
+    if 0.0 < per_bin < np.inf:  # centres that are one, or a subnormal number apart, have no bins
         plane = _cheapest_plane(boxes, order, low, high, axis, start, per_bin)
         middle = _partition(boxes, order, scratch, low, high, axis, start, per_bin, plane)
     return middle if low < middle < high else (low + high) // 2
