@@ -35,10 +35,10 @@ def owners(
 
 
 def _bisection(centroids: NDArray[np.float64], processors: int) -> NDArray[np.int32]:
-    """Recursive bisection of space; counts are split floor(n / 2) : rest, like the PEs.
+    """Recursive bisection of space, across the longest axis of the centroids.
 
-    Objects are split in proportion to the PEs of each half, so that parts stay balanced when the
-    number of PEs is not a power of two.
+    p PEs are split floor(p / 2) : rest, and their n objects in that proportion, the lower part
+    rounded down: floor(n / 2) : rest where p is even.
     """
     part_of = np.zeros(len(centroids), np.int32)
     pending = [(np.arange(len(centroids)), 0, processors)]
@@ -48,12 +48,12 @@ def _bisection(centroids: NDArray[np.float64], processors: int) -> NDArray[np.in
             part_of[ids] = first_pe
             continue
         left_pes = n_pes // 2
-        cut = len(ids) * left_pes // n_pes
+        n_left = len(ids) * left_pes // n_pes
         points = centroids[ids]
         axis = int(np.argmax(np.ptp(points, axis=0)))  # the first of equals: x < y < z
         order = ids[np.lexsort((ids, points[:, axis]))]
-        pending.append((np.sort(order[:cut]), first_pe, left_pes))
-        pending.append((np.sort(order[cut:]), first_pe + left_pes, n_pes - left_pes))
+        pending.append((np.sort(order[:n_left]), first_pe, left_pes))
+        pending.append((np.sort(order[n_left:]), first_pe + left_pes, n_pes - left_pes))
     return part_of
 
 

@@ -12,8 +12,8 @@ from simmpp.placement.placement import Memory, Residents
 from simmpp.streams import generator
 from simmpp.workload.workload import Workload
 
-COARSE_PRE_PASS = 16
-"""``hot`` counts the itineraries of every 16th pixel's rays (ESTIMATE: a 1/16 pre-pass)."""
+COARSE_STEP = 4
+"""``hot`` counts the itineraries of every 4th row's every 4th pixel (ESTIMATE: a 1/16 pre-pass)."""
 
 Ids = NDArray[np.int32]
 Ranking = Callable[[int], Ids]
@@ -30,13 +30,16 @@ def replicas(
     """
     ranking = _rankings(memory.residents, workload, owners, seed)
     n_own = np.bincount(owners, minlength=processors)
+    own_bytes = np.zeros(processors, np.int64)
+    np.add.at(own_bytes, owners, workload.object_bytes)
     held: list[Ids] = []
     for pe in range(processors):
         if memory.bytes is None:
             wanted = resident_count(memory.fraction, workload.n_objects) - int(n_own[pe])
             held.append(ranking(pe)[:wanted] if wanted > 0 else np.zeros(0, np.int32))
         else:
-            held.append(_fitting(workload, owners, pe, ranking(pe), memory.bytes))
+            room_bytes = memory.bytes - int(own_bytes[pe])
+            held.append(_fitting(workload.object_bytes, ranking(pe), room_bytes))
     offsets = np.concatenate([[0], np.cumsum([len(ids) for ids in held])]).astype(np.int64)
     return offsets, np.concatenate(held, dtype=np.int32)
 
@@ -46,10 +49,9 @@ def resident_count(fraction: Fraction, n_objects: int) -> int:
     return int(fraction * n_objects + Fraction(1, 2))
 
 
-def _fitting(workload: Workload, owners: Ids, pe: int, ranked: Ids, room_bytes: int) -> Ids:
-    """The longest prefix of the ranking that fits beside the PE's own objects."""
-    own_bytes = int(workload.object_bytes[owners == pe].sum())
-    total = own_bytes + np.cumsum(workload.object_bytes[ranked])
+def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> Ids:
+    """The longest prefix of the ranking that fits into what the PE's own objects leave."""
+    total = np.cumsum(object_bytes[ranked])
     return ranked[: int(np.searchsorted(total, room_bytes, side="right"))]
 
 
@@ -65,10 +67,12 @@ def _rankings(rule: Residents, workload: Workload, owners: Ids, seed: int) -> Ra
 
 
 def _coarse_uses(workload: Workload) -> NDArray[np.int64]:
-    """How often each object is tested by the rays of every 16th pixel: (N,) int64."""
+    """How often the rays of every 4th row's every 4th pixel test each object: (N,) int64."""
+    rows, columns = np.divmod(workload.pixels, workload.picture[1])
+    sampled = (rows % COARSE_STEP == 0) & (columns % COARSE_STEP == 0)
     lengths = np.diff(workload.itinerary_offsets)
-    sampled = np.repeat(workload.pixels % COARSE_PRE_PASS == 0, lengths)
-    return np.bincount(workload.itinerary_objects[sampled], minlength=workload.n_objects)
+    tested = workload.itinerary_objects[np.repeat(sampled, lengths)]
+    return np.bincount(tested, minlength=workload.n_objects)
 
 
 def _nearest(centroids: NDArray[np.float64], owners: Ids, pe: int) -> Ids:

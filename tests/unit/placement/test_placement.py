@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from builders import random_case
+from builders import random_case, workload_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -92,6 +93,15 @@ def test_bytes_of_memory_are_not_exceeded() -> None:
             held = own + int(workload.object_bytes[placed.replica_objects[span]].sum())
             assert held <= max(room, own)
     assert placed.effective_fraction == 1.0
+
+
+def test_hot_objects_are_those_of_every_fourth_row_and_column() -> None:
+    one_each = replace(
+        workload_of(64, [[i] for i in range(64)], object_bytes=[1] * 64), picture=(8, 8)
+    )
+    memory, rules = Memory(Fraction(5, 64), residents="hot"), PlacementRules(owners="round_robin")
+    placed = place(one_each, 63, memory, rules, 0)
+    assert placed.replica_objects[slice(*placed.replica_offsets[1:3])].tolist() == [0, 4, 32, 36]
 
 
 def test_half_an_object_is_rounded_up() -> None:
