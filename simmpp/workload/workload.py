@@ -84,11 +84,11 @@ class Workload:
 
 
 def frozen(workload: Workload) -> Workload:
-    """The same workload, its arrays read-only and C-contiguous from now on."""
+    """The same workload with read-only, C-contiguous arrays; the caller's stay as they are."""
     arrays: dict[str, Any] = {}
     for each in dataclasses.fields(workload):
         value = getattr(workload, each.name)
         if isinstance(value, np.ndarray):
-            arrays[each.name] = np.ascontiguousarray(value)
+            arrays[each.name] = np.ascontiguousarray(value).view()
             arrays[each.name].flags.writeable = False
     return dataclasses.replace(workload, **arrays)
