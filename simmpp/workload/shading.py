@@ -66,11 +66,11 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
     """
     workload, lighting = traced.workload, _lighting(traced)
     colours = np.zeros((workload.n_rays, 3))
-    as_recorded = hits == workload.hits
+    as_recorded, first_shadows = hits == workload.hits, _first_shadows(workload)
     for start, rays in generations(traced):
         stop = start + len(rays.kinds)
         distances = workload.hit_distances[start:stop] * traced.frame.scale
-        shadows = _first_shadows(workload, start, stop)
+        shadows = first_shadows[start:stop]
         _shade(
             traced.geometry, lighting, rays, start, hits, as_recorded, distances, shadows, colours
         )
@@ -79,12 +79,13 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
     return np.rint(255 * np.clip(pixels, 0.0, 1.0)).astype(np.uint8)
 
 
-def _first_shadows(workload: Workload, start: int, stop: int) -> Ints:
-    """Number of the first shadow ray of rays start ... stop - 1: it follows the other children."""
+def _first_shadows(workload: Workload) -> Ints:
+    """Number of each ray's first shadow ray, (n,) int32: it follows the other children."""
     spawned = workload.kinds != SHADOW
-    before = np.concatenate([[0], np.cumsum(spawned, dtype=np.int32)])
-    first, after = workload.child_offsets[start:stop], workload.child_offsets[start + 1 : stop + 1]
-    numbers: Ints = (first + before[after] - before[first]).astype(np.int32)
+    before = np.zeros(workload.n_rays + 1, np.int32)
+    np.cumsum(spawned, out=before[1:])
+    first, after = workload.child_offsets[:-1], workload.child_offsets[1:]
+    numbers: Ints = first + before[after] - before[first]
     return numbers
 
 

@@ -38,7 +38,8 @@ class Surface(NamedTuple):
     flat: bool
     """Planar and opaque: nothing that leaves it comes back."""
     convex: bool
-    """Convex and opaque: nothing that leaves it on the outside comes back."""
+    """Sphere or open cone, and opaque: nothing that leaves it on the outside comes back. A cone's
+    side is part of the surface of a convex solid, which lies behind each of its tangent planes."""
 
 
 @njit_reading
@@ -64,7 +65,7 @@ def surface_at(
     entering = nx * ray.dx + ny * ray.dy + nz * ray.dz <= 0.0
     side = 1.0 if entering else -1.0
     lit = side if opaque else 1.0
-    flat, convex = opaque and kind == POLYGON, opaque and kind <= CONE
+    flat, convex = opaque and kind == POLYGON, opaque and kind in (SPHERE, CONE)
     return Surface(
         x, y, z,
         nx, ny, nz,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
+from simmpp.errors import ConfigError
 from simmpp.scene.boxes import boxes
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import bytes_on_the_wire
@@ -23,6 +24,9 @@ from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
 """Rays of one batch: bounds the memory of what is only passing through."""
+MOST_RAYS = 2**31 - 1
+"""Ray numbers are int32."""
+Number = TypeVar("Number", bound=np.generic)
 Integer = TypeVar("Integer", np.int32, np.int64)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
@@ -61,7 +65,11 @@ def trace(
     ------
     SceneError
         The scene's geometry or camera can't be traced.
+    ConfigError
+        The picture has more than MOST_RAYS rays.
     """
+    rows, columns = picture.shape
+    _require_numbers(rows * columns, scene.name)
     frame = frame_of(scene)
     geometry = flatten(scene, frame)
     rules = spawning(scene, picture, frame, geometry)
@@ -71,20 +79,28 @@ def trace(
     start = depth = 0
     while len(rays.kinds):
         depth += 1
-        end = start + len(rays.kinds)
+        known = end = start + len(rays.kinds)
         spawned = []
         for low in range(start, end, BATCH):
             part = rays.part(low - start, low - start + BATCH)
             hits, distances, n_tests, objects = _intersected(geometry, proposer, part)
             young, n_children = children(geometry, part, hits, distances, rules, depth, low)
             spawned.append(young)
+            known += len(young.kinds)
+            _require_numbers(known, scene.name)
             batches.append(
                 Batch(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
             )
             if progress:
-                progress(low + len(part.kinds), end + sum(len(young.kinds) for young in spawned))
+                progress(low + len(part.kinds), known)
         start, rays = end, joined(spawned)
     return _workload(scene, picture, geometry, frame, batches)
+
+
+def _require_numbers(n_rays: int, name: str) -> None:
+    if n_rays > MOST_RAYS:
+        problem = f"the picture has more than {MOST_RAYS} rays: lower its resolution or max_depth"
+        raise ConfigError(problem, where=name)
 
 
 def _intersected(
@@ -113,9 +129,9 @@ def _workload(
     frame: Frame,
     batches: list[Batch],
 ) -> Workload:
-    kinds, parents, n_children, hits, distances, n_tests, objects = (
-        np.concatenate(column) for column in zip(*batches, strict=True)
-    )
+    lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
+    batches.clear()  # so that _emptied frees what it has copied
+    kinds, parents, n_children, hits, distances, n_tests, objects = map(_emptied, lists)
     rows, columns = picture.shape
     bounds = boxes(scene.objects)
     return frozen(
@@ -137,6 +153,17 @@ def _workload(
             object_centroids=np.ascontiguousarray(bounds.mean(axis=1)),
         )
     )
+
+
+def _emptied(parts: list[NDArray[Number]]) -> NDArray[Number]:
+    """All parts, one after the other; the list is left empty, so they are not held twice."""
+    whole = np.empty(sum(map(len, parts)), parts[0].dtype)
+    end = len(whole)
+    while parts:
+        part = parts.pop()
+        whole[end - len(part) : end] = part
+        end -= len(part)
+    return whole
 
 
 def _offsets(counts: NDArray[np.int32], first: int, dtype: type[Integer]) -> NDArray[Integer]:

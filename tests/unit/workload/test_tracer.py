@@ -11,9 +11,10 @@ import sys
 import numpy as np
 import pytest
 
-from simmpp.errors import SceneError
+from simmpp.errors import ConfigError, SceneError
 from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Camera, Cone, Light, Material, Polygon, Scene, Sphere
+from simmpp.workload import tracer
 from simmpp.workload.check import check
 from simmpp.workload.intersect import Intersector
 from simmpp.workload.picture import Picture
@@ -149,13 +150,20 @@ def test_glass_is_lit_from_outside_and_what_is_opaque_on_the_side_that_is_seen(m
     assert (workload.hits[of_shadows] == -1).all()
 
 
-def test_what_is_convex_and_opaque_is_not_tested_by_rays_that_leave_it() -> None:
-    ball, floor = Sphere((0.0, 0.0, 0.0), 1.0), Polygon(np.array(FLOOR))
+@pytest.mark.parametrize(
+    "convex",
+    [Sphere((0.0, 0.0, 0.0), 1.0), Cone((0.0, 0.0, -1.0), 1.0, (0.0, 0.0, 1.0), 0.5)],
+    ids=["sphere", "cone"],
+)
+def test_what_is_convex_and_opaque_is_not_tested_by_rays_that_leave_it(convex) -> None:
+    """The eye sees the outside of both; what the floor reflects may meet the cone's inside."""
+    floor = Polygon(np.array(FLOOR))
     for material, left_out in ((MIRROR, True), (GLASS, False)):
         workload = trace(
-            scene(ball, floor, materials=(material,)), Picture(resolution=8, max_depth=2)
+            scene(convex, floor, materials=(material,)), Picture(resolution=8, max_depth=2)
         )
-        for ray in range(workload.n_primaries, workload.n_rays):
+        assert 0 in workload.hits[: workload.n_primaries]
+        for ray in range(workload.n_primaries, workload.child_offsets[workload.n_primaries]):
             source = workload.hits[workload.parents[ray]]
             tests = slice(*workload.itinerary_offsets[ray : ray + 2])
             assert (source in workload.itinerary_objects[tests]) != left_out
@@ -251,6 +259,16 @@ def test_progress_ends_when_all_rays_are_done() -> None:
     assert told[-1] == (workload.n_rays, workload.n_rays)
     assert all(done <= known for done, known in told)
     assert told == sorted(told)
+
+
+def test_more_rays_than_numbers_are_refused(monkeypatch) -> None:
+    n_rays = trace(load_scene("mountain:2"), SMALL).n_rays
+    monkeypatch.setattr(tracer, "MOST_RAYS", n_rays)
+    assert trace(load_scene("mountain:2"), SMALL).n_rays == n_rays
+    for fewer in (n_rays - 1, 575):
+        monkeypatch.setattr(tracer, "MOST_RAYS", fewer)
+        with pytest.raises(ConfigError, match=f"mountain:2: .* more than {fewer} rays"):
+            trace(load_scene("mountain:2"), SMALL)
 
 
 @pytest.mark.parametrize(
