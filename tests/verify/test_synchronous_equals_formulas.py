@@ -8,7 +8,13 @@ import pytest
 from builders import BANDWIDTHS, TIMES_PS, random_placement, random_workload
 
 from simmpp.engine.counts import Counts
-from simmpp.engine.synchronous import DATAFLOWS, Dataflow, SynchronousResult, synchronous
+from simmpp.engine.synchronous import (
+    DATAFLOWS,
+    MOST_PROCESSORS,
+    Dataflow,
+    SynchronousResult,
+    synchronous,
+)
 from simmpp.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
@@ -177,6 +183,13 @@ def test_a_run_that_would_not_fit_the_clock_is_refused() -> None:
     slow = replace(machine, send_startup_ps=1 << 60)
     with pytest.raises(ConfigError, match="clock"):
         synchronous(workload, slow, placement, "object")
+
+
+def test_more_processors_than_dense_counts_hold_are_refused() -> None:
+    workload, machine, placement = draw(2)
+    wide = replace(machine, shape=(MOST_PROCESSORS + 1, 1, 1))
+    with pytest.raises(ConfigError, match="processors: 4097, expected at most 4096"):
+        synchronous(workload, wide, placement, "object")
 
 
 def test_rays_move_in_ray_dataflow_as_equation_2_says() -> None:
