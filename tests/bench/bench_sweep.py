@@ -14,12 +14,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from simmpp.sweep import execute
-from simmpp.sweep.config import load_config
-from simmpp.sweep.outcome import Outcome
-from simmpp.sweep.sweep import Watcher, run_sweep
-from simmpp.sweep.task import Task
-from simmpp.sweep.worker import run_task
+from simmpp.sweeps import execute
+from simmpp.sweeps.config import load_config
+from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.sweep import Watcher, run_sweep
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
 
 CONFIG = Path(__file__).parents[2] / "configs" / "sweep.yaml"
 LARGER = ("picture.resolution=512",)

@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 from simmpp.cli import main
 from simmpp.compiled import cache_folder
 from simmpp.errors import ModelError
-from simmpp.sweep.rows import COLUMNS
+from simmpp.sweeps.rows import COLUMNS
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 """Compiled code is shared with the other tests; workloads are not."""
@@ -101,7 +101,7 @@ def test_a_picture_that_differs_fails_and_names_the_pixel(monkeypatch: pytest.Mo
         tests = result.tested_rays, result.tested_objects
         return dataclasses.replace(result, tested_rays=tests[0][:-9], tested_objects=tests[1][:-9])
 
-    monkeypatch.setattr("simmpp.sweep.point.simulate", forgetful)
+    monkeypatch.setattr("simmpp.sweeps.point.simulate", forgetful)
     done = simmpp("run", "c.yaml", "--verify")
     assert done.exit_code == 1
     assert "verify ray: differs: pixel (" in done.stdout
@@ -198,7 +198,7 @@ def test_other_ends(
     def simulate(*_: object, **__: object) -> None:
         raise raised
 
-    monkeypatch.setattr("simmpp.sweep.point.simulate", simulate)
+    monkeypatch.setattr("simmpp.sweeps.point.simulate", simulate)
     done = simmpp("run", "c.yaml")
     assert done.exit_code == code
     assert done.stderr.splitlines() == [line]
@@ -212,7 +212,7 @@ def test_an_interrupted_run_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) 
             raise KeyboardInterrupt
         return simulate(*arguments, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr("simmpp.sweep.point.simulate", interrupted)
+    monkeypatch.setattr("simmpp.sweeps.point.simulate", interrupted)
     assert simmpp("run", "c.yaml", "--out", "o").exit_code == 130
     lines = Path("o/results.csv").read_text().splitlines()
     assert [line.split(",")[4] for line in lines] == ["policy", "object", "ray"]

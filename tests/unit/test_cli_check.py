@@ -278,7 +278,7 @@ def test_failed_points_fail_the_check_and_are_no_baseline(monkeypatch: pytest.Mo
     def simulate(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("simmpp.sweep.worker.simulate", simulate)
+    monkeypatch.setattr("simmpp.sweeps.worker.simulate", simulate)
     done = check()
     assert done.exit_code == 1
     assert "out of memory" in done.stdout
