@@ -1,0 +1,5 @@
+"""``python -m simmpp`` is the command ``simmpp``."""
+
+from simmpp.cli import main
+
+main()
