@@ -11,6 +11,8 @@ from simmpp.report.claims import judge
 from simmpp.report.figures import FIGURES, PERCENT
 from simmpp.report.measured import Measured
 from simmpp.report.reproduce import EXPERIMENTS, MODEL, Reproduction, configuration, reproduce
+from simmpp.report.values import Evidence
+from simmpp.report.verdict import Verdict
 from simmpp.sweeps.config import load_config
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.profits import profit_rows
