@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -30,6 +34,16 @@ def test_every_box_is_one_leaf(n: int, apart: float) -> None:
     centres = np.random.default_rng(n).integers(0, n, (n, 3)) * apart
     boxes = np.hstack([centres, centres])
     assert sorted(leaves_below(boxes, *build(boxes))) == list(range(n))
+
+
+def test_no_bin_is_infinite_or_not_a_number() -> None:
+    """Compiled, such a bin is a write beside an array, which may go unseen; Python refuses it."""
+    build_subnormal = (
+        "import numpy as np; from simmpp.workload.bvh import build;"
+        "build(np.repeat(np.arange(64)[:, None] * 1e-310, 6, axis=1))"
+    )
+    interpreted = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    subprocess.run([sys.executable, "-c", build_subnormal], env=interpreted, check=True)
 
 
 def test_a_scene_of_polygons_a_subnormal_number_apart() -> None:
