@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 from simmpp.errors import ConfigError
@@ -39,19 +40,41 @@ def axes_of(sweep: Mapping[str, Sequence[object]]) -> dict[str, Axis]:
     Raises ConfigError for one that isn't one, or that sets what another sets.
     """
     axes = {name: _axis(name, values) for name, values in sweep.items()}
-    keys = [key for axis in axes.values() for key in _keys(axis)]
-    for key in keys:
-        if keys.count(key) > 1:
-            raise ConfigError(f"{key} is swept twice: expected one axis with it")
-    for pair in SAME:
-        if set(pair) <= set(keys):
-            raise ConfigError(f"expected {' or '.join(pair)}, got both")
+    _refuse_twice(axes.values())
     return axes
 
 
+def _refuse_twice(axes: Iterable[Axis]) -> None:
+    """Raise ConfigError for what is set under two keys, such as memory and memory.fraction."""
+    setting = [_keys_within(axis, key) for axis in axes for key in _keys(axis)]
+    for one, other in combinations(setting, 2):
+        for key in one:
+            if key in other:
+                raise ConfigError(f"{key} is swept twice: expected one axis with it")
+        for a, b in SAME:
+            if (a in one and b in other) or (b in one and a in other):
+                raise ConfigError(f"expected {a} or {b}, got both")
+
+
 def _keys(axis: Axis) -> list[str]:
-    """Every key that an axis sets, once."""
+    """Every key that an axis names, once."""
     return list(dict.fromkeys(key for choice in axis for key in choice.assignments))
+
+
+def _keys_within(axis: Axis, key: str) -> dict[str, None]:
+    """A key of an axis and those that its values hold, in their order."""
+    values = [choice.assignments[key] for choice in axis if key in choice.assignments]
+    return dict.fromkeys((key, *_dotted(key, values)))
+
+
+def _dotted(key: str, value: object) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        for name, child in value.items():
+            yield f"{key}.{name}"
+            yield from _dotted(f"{key}.{name}", child)
+    elif isinstance(value, list | tuple):
+        for child in value:
+            yield from _dotted(key, child)
 
 
 def _axis(name: object, values: object) -> Axis:

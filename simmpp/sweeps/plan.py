@@ -11,6 +11,7 @@ from simmpp.errors import ConfigError
 from simmpp.sweeps.config import Config, described
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.overruled import refuse_overruled
 from simmpp.sweeps.provenance import result_versions
 from simmpp.sweeps.rows import KEYS, NUMBERS, in_order
 from simmpp.sweeps.tables import Row
@@ -94,6 +95,7 @@ def plan(config: Config) -> Plan:
 
     Raises InputError for values that do not go together, and for scenes that can't be read.
     """
+    refuse_overruled(config)
     settings = config.settings
     if settings.tolerance is not None:
         raise ConfigError("tolerance: expected none here: a sweep takes the seeds that it is given")

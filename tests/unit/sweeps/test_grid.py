@@ -37,6 +37,54 @@ def test_axes_are_multiplied() -> None:
     assert len(found) == 16
 
 
+@pytest.mark.parametrize(
+    ("memory", "problem"),
+    [
+        ({"fraction": 0.1}, "memory.fraction is swept twice"),
+        ({"bytes": "1 kB"}, "expected memory.fraction or memory.bytes, got both"),
+    ],
+)
+def test_a_key_inside_a_swept_value_is_not_swept_again(
+    memory: dict[str, object], problem: str
+) -> None:
+    with pytest.raises(ConfigError, match=problem):
+        points({"memory": [memory], "memory.fraction": [0.2]})
+    assert len(points({"memory": [memory, {"fraction": 0.2}]})) == 4
+    assert len(points({"memory": [{"residents": "hot"}], "memory.fraction": [0.2]})) == 2
+
+
+@pytest.mark.parametrize(
+    ("sweep", "override", "problem"),
+    [
+        ({"processors": [2, 3]}, "processors=9", "'processors' is swept; set sweep.processors"),
+        ({"policy": ["ray"]}, "policy.batch=9", "'policy' is swept; set sweep.policy"),
+        ({"memory.fraction": [0.2]}, "memory.bytes=1 kB", "expected none: memory.fraction is"),
+        ({"memory.bytes": ["1 kB"]}, "memory.fraction=0.2", "expected none: memory.bytes is"),
+    ],
+)
+def test_a_set_without_effect_is_refused(
+    sweep: dict[str, object], override: str, problem: str
+) -> None:
+    config = config_from_mapping({**BASE, "sweep": sweep}, [override])
+    with pytest.raises(ConfigError) as caught:
+        plan(config)
+    assert str(caught.value).startswith(f"--set {override.partition('=')[0]}: {problem}")
+
+
+def test_a_set_that_some_points_take_is_none_without_effect() -> None:
+    sweep = {"points": [{"name": "a", "processors": 2}, {"name": "b"}]}
+    made = plan(config_from_mapping({**BASE, "sweep": sweep}, ["processors=9"]))
+    assert {each.point.config.processors for each in made.points} == {2, 9}
+    swept = {"processors": [2, 3]}
+    plan(config_from_mapping({**BASE, "sweep": swept}, ["sweep.processors=[9]", "policy.batch=3"]))
+
+
+def test_memory_in_bytes_is_not_dropped_for_a_swept_fraction() -> None:
+    config = {**BASE, "memory": {"bytes": "1 kB"}, "sweep": {"memory.fraction": [0.1]}}
+    with pytest.raises(ConfigError, match=r"memory.bytes: expected none: memory.fraction is swept"):
+        plan(config_from_mapping(config))
+
+
 def test_without_a_sweep_there_is_one_point() -> None:
     assert named(points({})) == [(64, 0.1, "ray", 0)]
 
