@@ -60,9 +60,10 @@ def exchanges(processors: int) -> tuple[Workload, Machine, Placement]:
     return workload, machine, placement
 
 
-def mountain5(processors: int) -> tuple[Workload, Machine, Placement]:
+def mountain5(processors: int, resolution: int = 512) -> tuple[Workload, Machine, Placement]:
     """The paper's picture."""
-    workload = workload_for(simmpp.load_scene("mountain:5"), simmpp.Picture())
+    picture = simmpp.Picture(resolution=resolution)
+    workload = workload_for(simmpp.load_scene("mountain:5"), picture)
     memory = simmpp.Memory(fraction=Fraction(1, 10))
     placement = simmpp.place(workload, processors, memory, simmpp.PlacementRules(), 0)
     return workload, simmpp.make_machine(processors=processors), placement
@@ -98,5 +99,19 @@ def main() -> None:
             )
 
 
+def growth() -> None:
+    """How time grows with the machine at equal work, and with the work on an equal machine."""
+    print("\nobject dataflow, Mountain5, compiled\nPEs    pixels     messages  seconds  peak MB")
+    machines = [(processors, 512) for processors in (64, 256, 1024, 4096, 16384)]
+    pictures = [(64, resolution) for resolution in (64, 128, 256, 512, 1024)]
+    for processors, resolution in machines + pictures:
+        seconds, result = best_s("compiled", mountain5(processors, resolution))
+        peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+        print(
+            f"{processors:5} {resolution:5}^2 {result.messages:12} {seconds:8.3f} {peak_mb:8}",
+        )
+
+
 if __name__ == "__main__":
     main()
+    growth()
