@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Callable
 from typing import Any, NoReturn
 
 import click
@@ -17,8 +19,9 @@ from simmpp.commands.sweep import sweep_command
 from simmpp.commands.workload import workload_command
 from simmpp.errors import InputError, ModelError
 
-INPUT_ERROR, MODEL_ERROR, INTERRUPTED = 2, 70, 130
-"""Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT)."""
+INPUT_ERROR, MODEL_ERROR, INTERRUPTED, READER_GONE = 2, 70, 130, 141
+"""Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT), and a
+pipe that nobody reads any more, as with ``| head`` (128 + SIGPIPE)."""
 
 
 class Commands(click.Group):
@@ -27,11 +30,11 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command named."""
         try:
-            return super().invoke(ctx)
+            return _invoked(super().invoke, ctx)
         except InputError as error:
             _quit(f"error: {error}", INPUT_ERROR)
         except BrokenPipeError:
-            raise  # click knows what to do when the reader of a pipe has gone
+            _leave_pipe()
         except OSError as error:
             _quit(f"error: {error.filename or 'output'}: {error.strerror or error}", INPUT_ERROR)
         except ModelError as error:
@@ -40,6 +43,23 @@ class Commands(click.Group):
             _quit("interrupted", INTERRUPTED)
         except MemoryError:
             _quit("error: out of memory: expected a smaller scene or resolution", INPUT_ERROR)
+
+
+def _invoked(invoke: Callable[[click.Context], Any], ctx: click.Context) -> Any:
+    """What ``invoke`` returns; a pipe may break as late as with the last of the output."""
+    try:
+        return invoke(ctx)
+    finally:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+
+
+def _leave_pipe() -> NoReturn:
+    """End; what Python still holds for the pipe goes nowhere, or it would complain of that too."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in filter(None, (sys.stdout, sys.stderr)):
+        os.dup2(nowhere, stream.fileno())
+    sys.exit(READER_GONE)
 
 
 def _quit(message: str, code: int) -> NoReturn:

@@ -20,7 +20,7 @@ UNLIMITED = 0
 
 LONGEST_PS = 10 * 10**12
 """Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
-MOST_BYTES = 2**60
+MOST_BYTES = 10**17
 LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 9 * 10**15
 
 A_TIME = "a time such as '12 us'"
@@ -85,8 +85,16 @@ def _quantity(value: object, unit: str, expected: str, most: int) -> Fraction:
     if number is None:
         raise ConfigError(f"value {shown(value)}: expected {expected}")
     if number > most:
-        raise ConfigError(f"value {shown(value)}: expected {expected}, at most {most} {unit}")
+        raise ConfigError(
+            f"value {shown(value)}: expected {expected}, at most {_bound(most, unit)}"
+        )
     return number
+
+
+def _bound(most: int, unit: str) -> str:
+    if unit == "picosecond":
+        return format_ps(most)
+    return format_bytes(most) if unit == "byte" else format_bytes_per_s(most)
 
 
 def half_up(number: Fraction) -> int:
@@ -175,3 +183,9 @@ def format_bytes(size_bytes: int) -> str:
 def format_bytes_per_s(rate: int) -> str:
     """340000000 -> ``"340 MB/s"``; UNLIMITED -> ``"unlimited"``."""
     return "unlimited" if rate == UNLIMITED else format_bytes(rate) + "/s"
+
+
+def counted(number: int, noun: str) -> str:
+    """``"1 mesh"``, ``"2 meshes"``."""
+    ending = "" if number == 1 else "es" if noun.endswith("sh") else "s"
+    return f"{number} {noun}{ending}"

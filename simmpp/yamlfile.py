@@ -30,6 +30,7 @@ from ruamel.yaml.events import (
 )
 
 from simmpp.errors import ConfigError
+from simmpp.special import refuse_special
 
 KeyPath = tuple[str | int, ...]
 
@@ -61,6 +62,7 @@ def read_yaml(path: Path) -> Document:
     Raises ConfigError, one line, if the file can't be read or isn't plain YAML.
     """
     try:
+        refuse_special(path)
         with open(path, encoding="utf-8") as file:
             text = file.read(MOST_CHARACTERS + 1)
     except UnicodeDecodeError:

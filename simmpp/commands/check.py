@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import NamedPath
+
 if TYPE_CHECKING:
     from simmpp.report.baseline import Sweep
     from simmpp.report.compare import Move
@@ -23,19 +25,19 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits.png"
 
 
 @click.command("check")
-@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option(
     "--baseline",
     "baseline_path",
     required=True,
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     help="A profits.csv with results.csv and run.json beside it.",
 )
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     help="Folder for what came out: the tables, moved.csv, and profits.png over the baseline's.",
 )
 @click.option("--workers", type=click.IntRange(1, 4096), help="Processes, as for sweep.")

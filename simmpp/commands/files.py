@@ -8,10 +8,12 @@ from pathlib import Path
 from simmpp.errors import ConfigError
 
 
-def writable(path: Path | None, option: str) -> None:
-    """Raise ConfigError unless a file can be written at ``path``; None is fine."""
+def writable(path: Path | None, option: str, suffix: str = "") -> None:
+    """Raise ConfigError unless a file so called can be written at ``path``; None is fine."""
     if path is None:
         return
+    if not path.name.lower().endswith(suffix):
+        raise ConfigError(f"{option}: value {str(path)!r}: expected a file {suffix}")
     if path.is_dir():
         raise ConfigError(f"{option}: value {str(path)!r}: expected a file, it is a folder")
     if not path.parent.is_dir():

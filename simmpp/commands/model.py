@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import FiniteRange, NamedPath
+
 if TYPE_CHECKING:
     from simmpp.model.analytical import Makespans
     from simmpp.sweeps.config import Config
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @click.command("model")
-@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option(
     "--set",
     "overrides",
@@ -32,12 +34,12 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--imbalance",
-    type=click.FloatRange(0, 1),
+    type=FiniteRange(0, 1),
     default=0.0,
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for figure2.csv and figure2.")
+@click.option("--out", type=NamedPath(), help="Folder for figure2.csv and figure2.")
 def model_command(
     config_path: Path,
     overrides: tuple[str, ...],

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import NamedPath
+
 if TYPE_CHECKING:
     from simmpp.report.reproduce import Reproduction
 
@@ -18,7 +20,7 @@ POINTS_FAILED = 1
 @click.command("reproduce")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     default=Path("results", "nebel98"),
     show_default=True,
     help="Folder of rows, figures and claims.csv.",

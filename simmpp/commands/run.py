@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import NamedPath
+
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
@@ -18,7 +20,7 @@ VERIFY_FAILED = 1
 
 
 @click.command("run")
-@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option("--engine", help="The event loop (see the key engine).")
 @click.option(
     "--set",
@@ -27,8 +29,8 @@ VERIFY_FAILED = 1
     metavar="KEY=VALUE",
     help="Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for run.json and results.csv.")
-@click.option("--picture", type=click.Path(path_type=Path), help="Write the picture as PNG.")
+@click.option("--out", type=NamedPath(), help="Folder for run.json and results.csv.")
+@click.option("--picture", type=NamedPath(), help="Write the picture as PNG.")
 @click.option(
     "--verify",
     is_flag=True,
@@ -48,13 +50,16 @@ def run_command(
     reference of the profits and the replicated scene as the ceiling, if they are not named.
     """
     from simmpp.commands.files import folder, writable
+    from simmpp.commands.terminal import notice
     from simmpp.sweeps.config import load_config
 
     if engine is not None:
         overrides = (*overrides, f"engine={engine}")
     config = load_config(config_path, overrides)
-    writable(picture, "--picture")
+    writable(picture, "--picture", ".png")
     folder(out, "--out")
+    if config.settings.sweep:
+        notice("run simulates one point; the values under 'sweep' are for simmpp sweep")
     run(config, out=out, picture=picture, verify=verify)
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from simmpp.units import format_bytes
+from simmpp.commands.options import NamedPath
+from simmpp.units import counted, format_bytes
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -20,8 +21,8 @@ OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10
 
 @click.command("scene")
 @click.argument("spec")
-@click.option("--nff", "nff_path", type=click.Path(path_type=Path), help="Write the scene as NFF.")
-@click.option("--preview", type=click.Path(path_type=Path), help="Write a picture of it as PNG.")
+@click.option("--nff", "nff_path", type=NamedPath(), help="Write the scene as NFF.")
+@click.option("--preview", type=NamedPath(), help="Write a picture of it as PNG.")
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
 def scene_command(
     spec: str, nff_path: Path | None, preview: Path | None, all_objects: bool
@@ -35,8 +36,8 @@ def scene_command(
     from simmpp.scene.load import load_scene
     from simmpp.scene.nff import write_nff
 
-    for path, option in ((nff_path, "--nff"), (preview, "--preview")):
-        writable(path, option)
+    writable(nff_path, "--nff", ".nff")
+    writable(preview, "--preview", ".png")
     scene = load_scene(spec)
     _list(scene, None if all_objects else OBJECTS_SHOWN)
     if nff_path:
@@ -65,11 +66,11 @@ def _list(scene: Scene, most_objects: int | None) -> None:
 
 def _facts(facts: dict[str, Any]) -> list[str]:
     """Lines about the scene as a whole."""
-    kinds = ", ".join(f"{count} {kind}s" for kind, count in facts["objects"].items())
+    kinds = ", ".join(counted(count, kind) for kind, count in facts["objects"].items())
     camera = facts["camera"]
     lines = [
-        f"{facts['name']}: {facts['n_objects']} objects ({kinds or 'empty'}), "
-        f"{facts['triangles']} triangles, {format_bytes(facts['bytes'])}",
+        f"{facts['name']}: {counted(facts['n_objects'], 'object')} ({kinds or 'empty'}), "
+        f"{counted(facts['triangles'], 'triangle')}, {format_bytes(facts['bytes'])}",
         f"{facts['reflecting']} reflect, {facts['transmitting']} transmit",
         f"camera at {_vector(camera['eye'])} towards {_vector(camera['at'])}, "
         f"up {_vector(camera['up'])}, {camera['angle_degrees']:g} degrees",

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import FiniteRange, NamedPath
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -20,7 +22,7 @@ PROFITS_SHOWN = 40
 
 
 @click.command("sweep")
-@click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+@click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option(
     "--workers",
     type=click.IntRange(1, 4096),
@@ -38,13 +40,13 @@ PROFITS_SHOWN = 40
 @click.option(
     "--timeout",
     "timeout_s",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     help="Folder of the tables.  [default: results/NAME-OF-CONFIG]",
 )
 def sweep_command(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import TextIO
 
 import click
 from rich.console import Console
@@ -15,10 +16,23 @@ WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
 
 
+class _Results(Console):
+    """Rich would exit with 1 when the reader of a pipe has gone; simmpp.cli decides that."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise it again."""
+        raise BrokenPipeError
+
+
 def output() -> Console:
     """The console of results: plain text, as wide as the terminal."""
-    width = None if sys.stdout.isatty() else WIDTH_OF_A_PIPE
-    return Console(width=width, highlight=False, markup=False, emoji=False)
+    width = None if _is_terminal(sys.stdout) else WIDTH_OF_A_PIPE
+    return _Results(width=width, highlight=False, markup=False, emoji=False)
+
+
+def _is_terminal(stream: TextIO | None) -> bool:
+    """Whether people read it; Python has None for a stream that was closed before it began."""
+    return stream is not None and stream.isatty()
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> Table:
@@ -56,7 +70,7 @@ def progress_bars() -> Iterator[Progress]:
         TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
-        disable=not sys.stderr.isatty(),
+        disable=not _is_terminal(sys.stderr),
     )
     with bars:
         yield bars

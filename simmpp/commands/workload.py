@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from simmpp.commands.options import NamedPath
+
 if TYPE_CHECKING:
     from simmpp.workload.workload import Workload
 
@@ -15,7 +17,7 @@ OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 
 @click.command("workload")
 @click.argument("spec")
-@click.option("--export", type=click.Path(path_type=Path), help="Write it as .parquet or .npz.")
+@click.option("--export", type=NamedPath(), help="Write it as .parquet or .npz.")
 @click.option(
     "--set",
     "overrides",

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from simmpp.report.profit import ratio
 from simmpp.sweeps.point import Point, PolicyRun, ceiling_of, reference_of
-from simmpp.units import format_bytes, format_ps
+from simmpp.units import counted, format_bytes, format_ps
 
 Cell = Callable[[PolicyRun], str]
 
@@ -34,11 +34,16 @@ def heading(point: Point) -> str:
     rows, columns = workload.picture
     shape = " x ".join(map(str, machine.shape))
     memory = point.config.memory
-    room = format_bytes(memory.bytes) if memory.bytes is not None else f"{float(memory.fraction):g}"
+    room = (
+        format_bytes(memory.bytes)
+        if memory.bytes is not None
+        else f"{float(memory.fraction):g} of the scene"
+    )
     return (
-        f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "
-        f"{workload.n_tests} tests, {workload.n_objects} objects\n"
-        f"{machine.name}: {machine.processors} PEs ({shape}), memory {room} of the scene on each "
+        f"{workload.name}: {columns} x {rows} primary rays, "
+        f"{counted(workload.n_rays, 'ray')} in all, "
+        f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
+        f"{machine.name}: {counted(machine.processors, 'PE')} ({shape}), memory {room} on each "
         f"(effectively {placement.effective_fraction:.4g}), seed {point.seed}"
     )
 

@@ -12,6 +12,7 @@ from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd import generators
+from simmpp.special import refuse_special
 
 KEYS = {"spd": {"spd", "size"}, "nff": {"nff"}, "mesh": {"mesh", "objects"}}
 """What a scene mapping starts from, and the keys it may then have."""
@@ -44,11 +45,28 @@ def _from_string(spec: str) -> Scene:
     if os.path.exists(spec):
         return _from_file(Path(spec))
     if colon and (os.path.exists(head) or Path(head).suffix):
-        return _from_file(Path(head), {"clusters": int(tail)} if tail.isdecimal() else tail)
+        return _cut(head, tail)
     if Path(spec).suffix or os.sep in spec:
         return _from_file(Path(spec))
+    _refuse_capitals(head)
     known = ", ".join(generators.GENERATORS)
     raise ConfigError(f"no scene {spec!r}: no such file, and the generated scenes are {known}")
+
+
+def _refuse_capitals(name: str) -> None:
+    """Raise ConfigError if ``name`` would be a generator's in small letters."""
+    if name.lower() in generators.known_names():
+        raise ConfigError(f"no scene {name!r}: expected {name.lower()!r}")
+
+
+def _cut(file: str, objects: str) -> Scene:
+    """The mesh of a file, cut as the text after its name says."""
+    try:
+        return _from_file(
+            Path(file), {"clusters": int(objects)} if objects.isdecimal() else objects
+        )
+    except ConfigError as error:
+        raise ConfigError(error.problem, where=f"{file}:{objects}") from None
 
 
 def _size(text: str, spec: str) -> int:
@@ -76,6 +94,8 @@ def _from_mapping(spec: Mapping[str, object]) -> Scene:
         return _generated(str(value), size)
     if kind == "nff":
         return _nff_file(Path(value))
+    if not os.path.exists(value):
+        _refuse_capitals(Path(value).name)
     return load_mesh(Path(value), objects=spec.get("objects", "components"))
 
 
@@ -94,6 +114,7 @@ def _from_file(path: Path, objects: object = "components") -> Scene:
 
 def _nff_file(path: Path) -> Scene:
     try:
+        refuse_special(path)
         data = path.read_bytes()
     except (OSError, ValueError) as error:  # a null byte in the name is a ValueError
         reason = getattr(error, "strerror", None) or str(error)

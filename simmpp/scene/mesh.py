@@ -21,6 +21,7 @@ from simmpp.scene.cut import Cut, Indices, compacted, cut_named, welded
 from simmpp.scene.framing import framing
 from simmpp.scene.nff_words import LARGEST
 from simmpp.scene.scene import Floats, Material, MeshPart, Scene, Vector
+from simmpp.special import refuse_special
 
 Y_UP: Vector = (0.0, 1.0, 0.0)
 Z_UP: Vector = (0.0, 0.0, 1.0)
@@ -109,6 +110,7 @@ def _read(file: Path) -> Any:
 
     kind = file.suffix.lower().lstrip(".")
     try:
+        refuse_special(file)
         with file.open("rb") as opened:
             opened.read(1)
         if kind not in mesh_formats():

@@ -178,9 +178,74 @@ def test_mistakes() -> None:
     assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s").startswith(
         "simmpp: error: the simulated time exceeds the clock's"
     )
+    assert refused("run", "c.yaml", "--out", "") == (
+        "simmpp: error: --out: value '': expected the name of a file or folder"
+    )
+    assert refused("run", "").startswith("simmpp: error: CONFIG: value ''")
+    assert refused("run", "c.yaml", "--picture", "").startswith(
+        "simmpp: error: --picture: value ''"
+    )
+    assert refused("run", "c.yaml", "--picture", "x.jpg") == (
+        "simmpp: error: --picture: value 'x.jpg': expected a file .png"
+    )
+    assert refused("scene", "tetra:1", "--preview", "q.jpg").endswith("expected a file .png")
+    assert refused("scene", "tetra:1", "--nff", "q.txt").endswith("expected a file .nff")
+    assert refused("model", "c.yaml", "--imbalance", "nan") == (
+        "simmpp: error: --imbalance: value 'nan': expected a finite number"
+    )
+    for endless in ("nan", "inf"):
+        assert refused("sweep", "c.yaml", "--timeout", endless) == (
+            f"simmpp: error: --timeout: value {endless!r}: expected a finite number"
+        )
+        assert refused("model", "c.yaml", "--ratio", f"test={endless}").startswith(
+            f"simmpp: error: --ratio: value 'test={endless}': expected NAME=FACTOR"
+        )
     assert refused("scene", "tetra:0").startswith("simmpp: error: ")
     assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")
     assert refused("machine", "cm5").startswith("simmpp: error: value 'cm5': expected a preset")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+@pytest.mark.parametrize(("command", "name"), [("run", "p.yaml"), ("scene", "p.nff")])
+def test_a_named_pipe_is_refused(command: str, name: str) -> None:
+    os.mkfifo(name)
+    assert refused(command, name) == (
+        f"simmpp: error: {name}: can't read the file: expected a regular file"
+    )
+
+
+def test_run_says_that_it_does_not_sweep() -> None:
+    done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
+    assert done.exit_code == 0, done.output
+    assert done.stderr == (
+        "simmpp: run simulates one point; the values under 'sweep' are for simmpp sweep\n"
+    )
+
+
+def test_one_of_something_is_no_plural() -> None:
+    Path("one.yaml").write_text(CONFIG.replace("memory: {fraction: 0.3}\n", ""))
+    few = ("--set", "processors=1", "--set", "memory.bytes=64 MB", "--set", "policy=ray")
+    lines = simmpp("run", "one.yaml", *few).stdout.splitlines()
+    assert lines[1].startswith("t3e: 1 PE (1 x 1 x 1), memory 64 MB on each (effectively 1)")
+
+
+@pytest.mark.parametrize("arguments", [("scene", "tetra:5", "--objects"), ("machine", "t3e")])
+def test_a_pipe_that_nobody_reads_ends_a_command(arguments: tuple[str, ...]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "simmpp", *arguments], stdout=writer, stderr=subprocess.PIPE
+        )
+    finally:
+        os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+def test_a_closed_output_is_no_mistake() -> None:
+    code = "import sys; sys.stdout = None; from simmpp.cli import main; main(['machine', 't3e'])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Text to exact integers: what is read, what is refused, and that no float is in between."""
 
+import re
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
@@ -108,7 +110,23 @@ def test_wrong_shares(value: object) -> None:
         units.share(value)
 
 
+@pytest.mark.parametrize(
+    ("parse", "value", "most"),
+    [
+        (units.picoseconds, "11 s", "10 s"),
+        (units.byte_count, "1e30 B", "100000 TB"),
+        (units.bytes_per_second, "1e30 B/s", "9000 TB/s"),
+    ],
+)
+def test_bounds_are_quantities_too(parse: Callable[[object], int], value: str, most: str) -> None:
+    with pytest.raises(ConfigError, match=rf", at most {re.escape(most)}$"):
+        parse(value)
+
+
 def test_text_for_people() -> None:
+    assert units.counted(1, "mesh") == "1 mesh"
+    assert units.counted(2, "mesh") == "2 meshes"
+    assert units.counted(0, "PE") == "0 PEs"
     assert units.format_ps(12_000_000) == "12 us"
     assert units.format_ps(0) == "0 s"
     assert units.format_bytes(64_000_000) == "64 MB"
