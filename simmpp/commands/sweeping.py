@@ -32,7 +32,6 @@ class Progressing(Watcher):
         self.total = len(keys)
         self.before = sum(key in keys and not finished[key].error for key in finished)
         self.done, self.failed = self.before, 0
-        self._best, self._looked_s = "", -math.inf
         if self.before:
             notice(f"{self.before} of {self.total} simulations are there from before")
 
@@ -47,12 +46,10 @@ class Progressing(Watcher):
 
     def more(self) -> str:
         """What failed, and which policy is the fastest so far."""
-        if time.monotonic() - self._looked_s > BEST_S or self.done == self.total:
-            best = best_policy(self._plan.rows(self._finished), self._plan.further)
-            self._best = f"best so far: {best[0]} (time profit {best[1]:.2f})" if best else ""
-            self._looked_s = time.monotonic()
+        best = best_policy(self._plan.rows(self._finished), self._plan.further)
+        told = f"best so far: {best[0]} (time profit {best[1]:.2f})" if best else ""
         failed = f"{self.failed} failed" if self.failed else ""
-        return ", ".join(filter(None, (failed, self._best)))
+        return ", ".join(filter(None, (failed, told)))
 
 
 class Lines(Progressing):
@@ -84,6 +81,7 @@ class Bars(Progressing):
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
         """Draw the bar."""
         super().planned(plan, finished)
+        self._more, self._looked_s = "", -math.inf
         self._points = self._bars.add_task(
             "simulating", total=self.total, completed=self.done, more=""
         )
@@ -97,7 +95,9 @@ class Bars(Progressing):
     def simulated(self, outcome: Outcome) -> None:
         """Move the bar."""
         super().simulated(outcome)
-        self._bars.update(self._points, completed=self.done, more=self.more())
+        if time.monotonic() - self._looked_s > BEST_S or self.done == self.total:
+            self._more, self._looked_s = self.more(), time.monotonic()
+        self._bars.update(self._points, completed=self.done, more=self._more)
 
 
 @contextmanager

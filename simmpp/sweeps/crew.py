@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from typing import Any, ParamSpec, TypeVar
 
 from simmpp.errors import ConfigError
@@ -57,6 +58,8 @@ class Cluster(Crew):
             ) from None
         try:
             client: Any = Client  # has no types
+            with ThreadPoolExecutor(1) as apart:  # from the event loop of a notebook
+                apart.submit(asyncio.run, _reach(address)).result()
             self._client = client(address, timeout=CONNECT_S, set_as_default=False)
             self._client.wait_for_workers(1, timeout=WORKERS_S)
         except (OSError, ValueError, TimeoutError) as error:
@@ -68,6 +71,19 @@ class Cluster(Crew):
         """Leave the cluster as it was."""
         self.executor.shutdown(wait=False)  # cancels what is in flight
         self._client.close()
+
+
+async def _reach(address: str) -> None:
+    """Raise OSError or ValueError unless a scheduler can be reached there.
+
+    Asked before a Client is made: one that fails leaves a traceback behind.
+    """
+    from distributed import Security
+    from distributed.comm import connect
+
+    security: Any = Security()  # from Dask's own configuration, as a Client's
+    link = await connect(address, timeout=CONNECT_S, **security.get_connection_args("client"))
+    link.abort()
 
 
 def _line(error: Exception) -> str:

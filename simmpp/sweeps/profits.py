@@ -70,9 +70,10 @@ def _over_seeds(by_seed: dict[int, Row], references: dict[int, Row], further: Se
 
 
 def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, float] | None:
-    """The policy with the highest time profit over the rows that are there, and its geometric mean.
+    """The policy with the highest time profit, and its geometric mean.
 
-    None as long as no policy can be compared.
+    Policies are compared over the points and seeds that all of them have finished; None as long as
+    there are none.
     """
     names = [name for name in (*_keys(further), "seed") if name != "effective_fraction"]
     names.remove("policy")
@@ -80,16 +81,23 @@ def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, 
     for row in rows:
         if not row["error"]:
             points.setdefault(tuple(row[name] for name in names), {})[row["policy"]] = row
-    logarithms: dict[str, list[float]] = {}
-    for policies in points.values():
-        base = policies.pop(REFERENCE, None)
-        for policy, row in policies.items() if base else ():
-            if base and base["makespan_ps"] and row["makespan_ps"]:
-                gain = math.log(base["makespan_ps"] / row["makespan_ps"])
-                logarithms.setdefault(policy, []).append(gain)
-    means = {policy: fmean(gains) for policy, gains in logarithms.items()}
-    best = max(means, key=lambda policy: means[policy], default=None)
-    return None if best is None else (best, math.exp(means[best]))
+    titles = dict.fromkeys(policy for policies in points.values() for policy in policies)
+    common = [
+        policies
+        for policies in points.values()
+        if len(policies) == len(titles) and all(row["makespan_ps"] for row in policies.values())
+    ]
+    if REFERENCE not in titles or len(titles) == 1 or not common:
+        return None
+    means = {
+        title: fmean(
+            math.log(of[REFERENCE]["makespan_ps"] / of[title]["makespan_ps"]) for of in common
+        )
+        for title in titles
+        if title != REFERENCE
+    }
+    best = max(means, key=lambda title: means[title])
+    return best, math.exp(means[best])
 
 
 def _mean(values: Sequence[float]) -> float | str:

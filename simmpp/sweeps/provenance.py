@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import re
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
@@ -33,14 +34,22 @@ def all_versions() -> dict[str, str]:
 def difference(
     a: Mapping[str, Any], b: Mapping[str, Any], name_a: str = "there", name_b: str = "now"
 ) -> str:
-    """The first keys in which two records differ with both values; empty if they are equal."""
+    """The first keys in which two records differ with both values; empty if they are equal.
+
+    Digests are named only where nothing else tells the two apart.
+    """
     flat_a, flat_b = _flat(a), _flat(b)
     keys = [key for key in {**flat_a, **flat_b} if flat_a.get(key) != flat_b.get(key)]
+    keys = [key for key in keys if not _has_digest(flat_a, flat_b, key)] or keys
     shown = [
         f"{key} is {_text(flat_a, key)} {name_a}, {_text(flat_b, key)} {name_b}" for key in keys[:3]
     ]
     more = [f"and {len(keys) - 3} more"] if len(keys) > 3 else []
     return "; ".join(shown + more)
+
+
+def _has_digest(a: Mapping[str, Any], b: Mapping[str, Any], key: str) -> bool:
+    return any(re.search("[0-9a-f]{32}", str(flat.get(key))) for flat in (a, b))
 
 
 def _flat(record: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -9,6 +9,7 @@ from simmpp.sweeps.journal import FILE, Journal
 from simmpp.sweeps.outcome import Outcome
 
 IDENTITY = {"versions": {"numpy": "2.0"}, "config": {"processors": 8, "seeds": [0, 1]}}
+POINTS = {"points": 64 * "a"}
 OUTCOMES = [Outcome("a", {"messages": 3}, 0.5, 0.25), Outcome("b", error="no"), Outcome("c")]
 
 
@@ -64,6 +65,11 @@ def test_cut_anywhere_it_holds_the_lines_before(tmp_path: Path) -> None:
             {**IDENTITY, "config": {"processors": 9, "seeds": [0, 1]}},
             "config.processors is 8 there, 9 now",
         ),
+        (
+            {**IDENTITY, **POINTS, "config": {"processors": 9, "seeds": [0, 1]}},
+            "config.processors is 8 there, 9 now",
+        ),
+        ({**IDENTITY, **POINTS}, f"points is not given there, {64 * 'a'} now"),
         (
             {**IDENTITY, "config": {"seeds": [0], "x": 1}},
             "config.processors is 8 there, not given now; config.seeds is [0, 1] there, [0] now; "

@@ -93,5 +93,12 @@ def test_the_interval_holds_the_mean_19_times_of_20() -> None:
 def test_best_policy_so_far() -> None:
     rows = [row("object", 0, 10, 1), row("ray", 0, 5, 1), row("concurrent", 0, 4, 1)]
     assert best_policy(rows) == ("concurrent", pytest.approx(2.5))
+    begun = [
+        *rows,
+        row("object", 1, 10, 1),
+        row("ray", 1, 1, 1),
+    ]  # of concurrent, seed 1 is missing
+    assert best_policy(begun) == best_policy(rows)
+    assert best_policy([*begun, row("concurrent", 1, 9, 1)]) == ("ray", pytest.approx(20**0.5))
     assert best_policy(rows[1:]) is None
     assert best_policy([]) is None
