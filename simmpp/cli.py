@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from typing import Any, NoReturn
 
 import click
@@ -30,7 +29,7 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command named."""
         try:
-            return _invoked(super().invoke, ctx)
+            return super().invoke(ctx)
         except InputError as error:
             _quit(f"error: {error}", INPUT_ERROR)
         except BrokenPipeError:
@@ -43,15 +42,6 @@ class Commands(click.Group):
             _quit("interrupted", INTERRUPTED)
         except MemoryError:
             _quit("error: out of memory: expected a smaller scene or resolution", INPUT_ERROR)
-
-
-def _invoked(invoke: Callable[[click.Context], Any], ctx: click.Context) -> Any:
-    """What ``invoke`` returns; a pipe may break as late as with the last of the output."""
-    try:
-        return invoke(ctx)
-    finally:
-        if sys.stdout is not None:
-            sys.stdout.flush()
 
 
 def _leave_pipe() -> NoReturn:
