@@ -19,6 +19,7 @@ from simmpp.sweeps.overrides import Places, override, set_key
 from simmpp.sweeps.scene_settings import FILES
 from simmpp.sweeps.settings import PolicySettings, Settings
 from simmpp.units import shown
+from simmpp.workload.exchange import is_workload
 from simmpp.workload.picture import Picture, Samples
 from simmpp.yamlfile import KeyPath, read_yaml
 
@@ -118,6 +119,9 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
 
     Raises ConfigError, one line with file, line, key, value and what was expected.
     """
+    if is_workload(str(path)):
+        hint = f"expected a configuration (YAML); `simmpp workload {path}` lists these rays"
+        raise ConfigError(hint, where=str(path))
     document = read_yaml(Path(path))
     where = document.where
     if document.data is None:

@@ -12,6 +12,7 @@ from simmpp.sweeps.config import Config, described
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.overruled import refuse_overruled
+from simmpp.sweeps.point import refuse_unread
 from simmpp.sweeps.provenance import result_versions
 from simmpp.sweeps.rows import KEYS, NUMBERS, in_order
 from simmpp.sweeps.tables import Row
@@ -96,9 +97,7 @@ def plan(config: Config) -> Plan:
     Raises InputError for values that do not go together, and for scenes that can't be read.
     """
     refuse_overruled(config)
-    settings = config.settings
-    if settings.tolerance is not None:
-        raise ConfigError("tolerance: expected none here: a sweep takes the seeds that it is given")
+    refuse_unread(config)
     workloads: dict[str, tuple[str, str]] = {}
     points: list[PlannedPoint] = []
     for point in grid(config):

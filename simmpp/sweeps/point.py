@@ -15,6 +15,7 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
+from simmpp.strict import misplaced
 from simmpp.sweeps.config import Config
 from simmpp.workload.workload import Workload
 
@@ -62,10 +63,21 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
     """
     if config.settings.method != "simulate":
         raise ConfigError(f"method: value {config.settings.method!r}: expected simulate here")
+    refuse_unread(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
     placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
     return Point(config, workload, machine, placement, seed)
+
+
+def refuse_unread(config: Config) -> None:
+    """Raise ConfigError for keys that ask for more seeds than are named."""
+    settings, source = config.settings, config.source
+    given = [] if settings.tolerance is None else ["tolerance"]
+    given += ["max_seeds"] if "max_seeds" in settings.model_fields_set else []
+    for key in given:
+        problem = "not yet: expected it not to be given; simulations take the key seeds"
+        raise misplaced((key,), problem, source.places if source else {})
 
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:

@@ -9,7 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from simmpp.errors import ConfigError
 from simmpp.scene.spd.generators import find_generator, known_names
-from simmpp.strict import Expect, Strict, Text, integer, mistake, one_of, parsed_by
+from simmpp.strict import Expect, Strict, Text, mistake, one_of, parsed_by
 from simmpp.sweeps import values
 from simmpp.workload.exchange import is_workload
 
@@ -27,7 +27,7 @@ class SceneSettings(Strict):
     spd: Annotated[str, *one_of(*known_names())] | None = Field(
         default=None, description="a scene of the Standard Procedural Databases (Haines 1987)"
     )
-    size: Annotated[int, *integer(1, 10**9)] | None = Field(
+    size: Annotated[int, parsed_by(values.size), Expect(values.SIZE)] | None = Field(
         default=None, description="size of that scene; the SPD's own when not given"
     )
     nff: Text | None = Field(
@@ -74,7 +74,7 @@ def long_scene(value: object) -> object:
     if not isinstance(value, str):
         return value
     name, colon, detail = value.rpartition(":")
-    number = int(detail) if re.fullmatch("[0-9]{1,9}", detail) else None
+    number = int(detail) if re.fullmatch("[0-9]{1,30}", detail) else None
     if value in known_names():
         return {"spd": value}
     if name in known_names():

@@ -17,8 +17,17 @@ AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
 OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
 MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
 LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
-SEEDS = "a list of different integers from 0, such as [0, 1, 2]"
+SIZE = "an integer from 1 to what the scene can have"
+MOST_SEED = 2**63 - 1
+SEEDS = f"a list of different integers from 0 to {MOST_SEED}, such as [0, 1, 2]"
 TOLERANCE = "none, or a share above 0% and below 100%, such as 2%"
+
+
+def size(value: object) -> int:
+    """Size of a scene; the scene's generator knows the largest."""
+    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30:
+        return value
+    raise ConfigError(f"value {shown(value)}: expected {SIZE}")
 
 
 def objects(value: object) -> str | dict[str, int]:
@@ -57,10 +66,12 @@ def load_info(value: object) -> str | dict[str, int]:
 
 def seeds(value: object) -> tuple[int, ...]:
     """Different seeds, at least one."""
-    whole = isinstance(value, list | tuple) and all(
-        isinstance(n, int) and not isinstance(n, bool) and 0 <= n < 2**63 for n in value
-    )
-    if not isinstance(value, list | tuple) or not whole or not 0 < len(set(value)) == len(value):
+    if not isinstance(value, list | tuple):
+        raise ConfigError(f"value {shown(value)}: expected {SEEDS}")
+    for seed in value:
+        if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= MOST_SEED:
+            raise ConfigError(f"value {shown(seed)} in the list: expected {SEEDS}")
+    if not 0 < len(set(value)) == len(value):
         raise ConfigError(f"value {shown(value)}: expected {SEEDS}")
     return tuple(value)
 

@@ -8,6 +8,7 @@ from simmpp.errors import ConfigError
 from simmpp.sweeps.config import load_config
 
 A_SHARE = "expected a share from 0 to 1, such as 0.1, 10% or 1/64"
+A_POLICY = "expected object, ray, concurrent or replicated, or a mapping"
 PRODUCT = "expected three integers whose product is processors ="
 
 
@@ -125,6 +126,15 @@ MISTAKES = [
     ),
     (S + "seeds: []", "c.yaml:2: seeds: value []: expected a list of different integers from 0"),
     (S + "seeds: [1, 1]", "c.yaml:2: seeds: value [1, 1]: expected a list of different integers"),
+    (S + "seeds: [0, true]", "c.yaml:2: seeds: value true in the list: expected a list of differe"),
+    (
+        S + "seeds: [18446744073709551615]",
+        "c.yaml:2: seeds: value 18446744073709551615 in the list: expected a list of different "
+        "integers from 0 to 9223372036854775807,",
+    ),
+    (S + "policy: null", f"c.yaml:2: policy: value empty: {A_POLICY}"),
+    (S + "policy: [1]", f"c.yaml:2: policy: value 1: {A_POLICY}"),
+    ("scene: balls:1000000000", "c.yaml:1: scene: value 1000000000: the size of balls must be at"),
     (S + "tolerance: 0", "c.yaml:2: tolerance: value 0: expected none, or a share above 0%"),
     (S + "method: magic", "c.yaml:2: method: value 'magic': expected simulate, analytical or"),
     (S + "engine: magic", "c.yaml:2: engine: value 'magic': expected "),
@@ -169,3 +179,8 @@ def test_a_mistake_is_one_line_with_its_place(text: str, line: str) -> None:
 )
 def test_a_mistake_of_set_names_set(override: str, line: str) -> None:
     assert mistake(S, override).startswith(line)
+
+
+def test_rays_are_no_configuration() -> None:
+    with pytest.raises(ConfigError, match=r"^w\.parquet: .*`simmpp workload w\.parquet` lists"):
+        load_config("w.parquet")

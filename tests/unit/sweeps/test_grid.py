@@ -11,7 +11,9 @@ from simmpp.sweeps.axes import axes_of
 from simmpp.sweeps.config import config_from_mapping
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.plan import plan
+from simmpp.sweeps.point import make_point
 from simmpp.sweeps.task import canonical
+from simmpp.sweeps.workloads import workload_of
 
 BASE = {"scene": "tetra:1", "picture": {"resolution": 4}, "policy": "ray"}
 
@@ -252,6 +254,13 @@ def test_axes_need_no_configuration() -> None:
 
 
 def test_only_simulations_with_given_seeds() -> None:
-    for more, problem in (({"method": "analytical"}, "method"), ({"tolerance": "2%"}, "tolerance")):
+    for more, problem in (
+        ({"method": "analytical"}, "method"),
+        ({"tolerance": "2%"}, "tolerance"),
+        ({"max_seeds": 9}, "max_seeds"),
+    ):
+        config = config_from_mapping({**BASE, **more})
         with pytest.raises(ConfigError, match=problem):
-            plan(config_from_mapping({**BASE, **more}))
+            plan(config)
+        with pytest.raises(ConfigError, match=problem):
+            make_point(config, workload_of(config))
