@@ -68,8 +68,9 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
     from simmpp.report.summary import summary
-    from simmpp.sweeps.point import make_point
+    from simmpp.sweeps.point import make_point, refuse_unread
 
+    refuse_unread(config)
     if picture or verify:
         _require_scene(config, "--picture" if picture else "--verify")
     point = make_point(config, workload(config))

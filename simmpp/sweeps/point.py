@@ -61,8 +61,6 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
 
     Raises ConfigError if the memory or the machine's shape does not fit.
     """
-    if config.settings.method != "simulate":
-        raise ConfigError(f"method: value {config.settings.method!r}: expected simulate here")
     refuse_unread(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
@@ -71,8 +69,10 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
 
 
 def refuse_unread(config: Config) -> None:
-    """Raise ConfigError for keys that ask for more seeds than are named."""
+    """Raise ConfigError for keys that a simulation does not read: other methods, more seeds."""
     settings, source = config.settings, config.source
+    if settings.method != "simulate":
+        raise ConfigError(f"method: value {settings.method!r}: expected simulate here")
     given = [] if settings.tolerance is None else ["tolerance"]
     given += ["max_seeds"] if "max_seeds" in settings.model_fields_set else []
     for key in given:
