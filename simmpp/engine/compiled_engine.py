@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from simmpp.compiled import njit
 from simmpp.engine.activities import SLEEP, step
-from simmpp.engine.event_heap import DEPARTURE, EVENT_KEY, INSTANT, pop, push
+from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, is_next, pop, push
 from simmpp.engine.layout import NONE, Row, Run
 from simmpp.engine.log import note_arrival
 from simmpp.engine.memory import messages, messages_marks, outbox
-from simmpp.engine.sending import depart
+from simmpp.engine.sending import move_head
 from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.engine.tables import USED
@@ -103,7 +103,7 @@ def _run(
         elif rank < INSTANT:
             _arrive(runs, heap, lines, loop, message, time_ps)
         else:
-            _let_arrive(runs, heap, loop, message, depart(runs, message))
+            _move_head(runs, heap, loop, message, time_ps)
     return PAUSED
 
 
@@ -163,13 +163,31 @@ def _step(
         row = outbox(s)[i]
         m = messages(s)[row]
         if s.contends:
-            push(heap, loop, m.depart_ps, DEPARTURE + m.source, m.number, row)
+            push(heap, loop, m.depart_ps, HEAD + m.source, m.number, row)
         else:
             _let_arrive(runs, heap, loop, row, m.arrival_ps)
     if next_ps == SLEEP:
         line.asleep = 1
     else:
         _schedule_instant(heap, lines, loop, me, next_ps)
+
+
+@njit
+def _move_head(
+    runs: NDArray[np.void], heap: NDArray[np.void], loop: Row, message: int, now_ps: int
+) -> None:
+    """The head of a message goes on, and at once as long as nothing else happens before."""
+    s: Run = runs[0]
+    m = messages(s)[message]
+    rank = HEAD + m.source
+    while True:
+        now_ps = move_head(runs, message, now_ps)
+        if m.arrival_ps != NONE:
+            _let_arrive(runs, heap, loop, message, now_ps)
+            return
+        if s.rays_left == 0 or not is_next(heap, loop, now_ps, rank, m.number):
+            push(heap, loop, now_ps, rank, m.number, message)
+            return
 
 
 @njit

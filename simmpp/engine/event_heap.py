@@ -1,7 +1,7 @@
 """The queue of what is going to happen: a binary heap of events, ordered by time and ties.
 
 Ties are broken as in the readable engine: arrivals by (destination, source, send number), then the
-instants of PEs by (PE, number), then departures by (source, send number).
+instants of PEs by (PE, number), then heads of messages by (source, send number).
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from simmpp.engine.layout import Row
 
 INSTANT = 1 << 62
 """Rank of a PE's own instants, above all pairs of PEs."""
-DEPARTURE = INSTANT + (1 << 32)
-"""Rank of messages that enter a network with contention, above all instants."""
+HEAD = INSTANT + (1 << 32)
+"""Rank of heads of messages that come to a port or link, above all instants."""
 
 EVENT_KEY = np.dtype(
     [
         ("time_ps", "i8"),
-        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or DEPARTURE + source
+        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or HEAD + source
         ("number", "i8"),  # the sender's send number, or the PE's instants so far
-        ("message", "i8"),  # that arrives or departs; NONE at an instant
+        ("message", "i8"),  # that arrives or whose head moves; NONE at an instant
     ]
 )
 
@@ -35,6 +35,12 @@ def _before(a: Row, time_ps: int, rank: int, number: int) -> bool:
     if a.rank != rank:
         return a.rank < rank
     return a.number < number
+
+
+@njit
+def is_next(heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int) -> bool:
+    """Would an event with that key be the first?"""
+    return loop.size == 0 or not _before(heap[0], time_ps, rank, number)
 
 
 @njit

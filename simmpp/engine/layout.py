@@ -81,7 +81,9 @@ MESSAGE = np.dtype(
         ("number", "i8"),  # the sender's send number
         ("load", "i8"),  # the sender's, at packing, without the rays in the message
         ("payload_bytes", "i8"),
+        ("busy_ps", "i8"),  # how long it keeps each link and port busy, with contention
         ("chain", "i4"),
+        ("at", "i4"),  # PE that its head has come to, with contention; NONE before it departs
         ("source", "i4"),
         ("destination", "i4"),
         ("object", "i4"),

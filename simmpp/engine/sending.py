@@ -21,7 +21,7 @@ from simmpp.engine.memory import (
 )
 from simmpp.engine.tables import take
 from simmpp.engine.waiting import note_exchange, partner_of
-from simmpp.machine.links import book
+from simmpp.machine.links import ejection_port, injection_port, link_towards
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.machine.network import transfer_ps
 from simmpp.machine.torus import hops
@@ -59,7 +59,9 @@ def send(
     m.object, m.first, m.last, m.n = wanted, first, last, n
     m.payload_bytes, m.load = payload_bytes, pe.load
     m.depart_ps, m.number = depart_ps, pe.messages_sent
-    if s.contends == 0:
+    if s.contends:
+        m.at, m.arrival_ps = NONE, NONE
+    else:
         m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
     pe.messages_sent += 1
     sent_by_kind(s)[kind] += 1
@@ -86,17 +88,29 @@ def flight_ps(s: Run, source: int, destination: int, payload_bytes: int) -> int:
 
 
 @njit
-def depart(runs: NDArray[np.void], message: int) -> int:
-    """A message enters a network with contention; returns its arrival, after all booked before it.
+def move_head(runs: NDArray[np.void], message: int, now_ps: int) -> int:
+    """The head of a message is at a port or link now: it takes it as soon as that is free.
 
-    No time in ``free_ps`` exceeds an arrival, so none can wrap if no arrival exceeds the clock.
+    Returns when the head is at the next one, or when the message arrives, which is known then.
     """
     s: Run = runs[0]
     m = messages(s)[message]
-    busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
-    torus, ways = (s.x, s.y, s.z), free_ps(s)
-    times = (m.depart_ps, s.latency_ps, s.hop_latency_ps, busy_ps)
-    m.arrival_ps = book(ways, torus, m.source, m.destination, *times)
-    if m.arrival_ps > CLOCK_LIMIT_PS:
+    if m.at == NONE:
+        m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
+        m.at = m.source
+        return _take(s, injection_port(m.source), now_ps, m.busy_ps) + s.latency_ps
+    if m.at == m.destination:
+        m.arrival_ps = _take(s, ejection_port(m.at), now_ps, m.busy_ps) + m.busy_ps
+        return m.arrival_ps
+    link, m.at = link_towards((s.x, s.y, s.z), m.at, m.destination)
+    return _take(s, link, now_ps, m.busy_ps) + s.hop_latency_ps
+
+
+@njit
+def _take(s: Run, row: int, now_ps: int, busy_ps: int) -> int:
+    """Keep a link or port busy from when it is free; returns when that is."""
+    start_ps = max(now_ps, free_ps(s)[row])
+    if start_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
-    return m.arrival_ps
+    free_ps(s)[row] = start_ps + busy_ps
+    return start_ps

@@ -34,7 +34,7 @@ class Simulation(Dispatch):
             "arrive": self.arrive,
             "begin": self.begin,
             "dispatch": self.dispatch,
-            "depart": self.depart,
+            "take": self.take,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
