@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from simmpp.compiled import njit
 from simmpp.engine.activities import SLEEP, step
-from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, is_next, pop, push
+from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, pop, push, replace_first
 from simmpp.engine.layout import NONE, Row, Run
 from simmpp.engine.log import note_arrival
 from simmpp.engine.memory import messages, messages_marks, outbox
@@ -97,13 +97,14 @@ def _run(
             return FINISHED
         if _short_of_room(s):
             return FULL
+        if rank >= HEAD:
+            move_first(runs, heap, loop)
+            continue
         pop(heap, loop)
-        if message == NONE:
-            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
-        elif rank < INSTANT:
+        if message != NONE:
             _arrive(runs, heap, lines, loop, message, time_ps)
         else:
-            _move_head(runs, heap, loop, message, time_ps)
+            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
     return PAUSED
 
 
@@ -163,9 +164,9 @@ def _step(
         row = outbox(s)[i]
         m = messages(s)[row]
         if s.contends:
-            push(heap, loop, m.depart_ps, HEAD + m.source, m.number, row)
+            push(heap, loop, m.head_ps, HEAD + m.source, m.number, row)
         else:
-            _let_arrive(runs, heap, loop, row, m.arrival_ps)
+            push(heap, loop, m.arrival_ps, _arrival_rank(m), m.number, row)
     if next_ps == SLEEP:
         line.asleep = 1
     else:
@@ -173,30 +174,19 @@ def _step(
 
 
 @njit
-def _move_head(
-    runs: NDArray[np.void], heap: NDArray[np.void], loop: Row, message: int, now_ps: int
-) -> None:
-    """The head of a message goes on, and at once as long as nothing else happens before."""
-    s: Run = runs[0]
-    m = messages(s)[message]
-    rank = HEAD + m.source
-    while True:
-        now_ps = move_head(runs, message, now_ps)
-        if m.arrival_ps != NONE:
-            _let_arrive(runs, heap, loop, message, now_ps)
-            return
-        if s.rays_left == 0 or not is_next(heap, loop, now_ps, rank, m.number):
-            push(heap, loop, now_ps, rank, m.number, message)
-            return
+def move_first(runs: NDArray[np.void], heap: NDArray[np.void], loop: Row) -> None:
+    """The first event is the head of a message: it goes on, or the message arrives."""
+    rank, number, message = heap[0].rank, heap[0].number, heap[0].message
+    next_ps = move_head(runs, message)
+    m = messages(runs[0])[message]
+    if m.arrival_ps != NONE:
+        rank = _arrival_rank(m)
+    replace_first(heap, loop, next_ps, rank, number, message)
 
 
 @njit
-def _let_arrive(
-    runs: NDArray[np.void], heap: NDArray[np.void], loop: Row, message: int, arrival_ps: int
-) -> None:
-    m = messages(runs[0])[message]
-    rank = (np.int64(m.destination) << 31) | m.source
-    push(heap, loop, arrival_ps, rank, m.number, message)
+def _arrival_rank(m: Row) -> int:
+    return (np.int64(m.destination) << 31) | m.source
 
 
 @njit

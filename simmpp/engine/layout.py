@@ -77,15 +77,16 @@ PARTNER = np.dtype(
 MESSAGE = np.dtype(
     [
         ("depart_ps", "i8"),
-        ("arrival_ps", "i8"),
         ("number", "i8"),  # the sender's send number
         ("load", "i8"),  # the sender's, at packing, without the rays in the message
         ("payload_bytes", "i8"),
-        ("busy_ps", "i8"),  # how long it keeps each link and port busy, with contention
-        ("chain", "i4"),
-        ("at", "i4"),  # PE that its head has come to, with contention; NONE before it departs
-        ("source", "i4"),
+        ("arrival_ps", "i8"),
+        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
+        ("head_ps", "i8"),  # when its head is at the next link or port,
+        ("at", "i4"),  # and the PE where that is
         ("destination", "i4"),
+        ("source", "i4"),
+        ("chain", "i4"),
         ("object", "i4"),
         ("first", "i4"),  # rays
         ("last", "i4"),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
-from simmpp.engine.layout import NONE, PACK, Run
+from simmpp.engine.layout import NONE, PACK, Row, Run
 from simmpp.engine.memory import (
     copy_costs,
     free_ps,
@@ -60,7 +60,7 @@ def send(
     m.payload_bytes, m.load = payload_bytes, pe.load
     m.depart_ps, m.number = depart_ps, pe.messages_sent
     if s.contends:
-        m.at, m.arrival_ps = NONE, NONE
+        inject(s, m)
     else:
         m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
     pe.messages_sent += 1
@@ -88,22 +88,27 @@ def flight_ps(s: Run, source: int, destination: int, payload_bytes: int) -> int:
 
 
 @njit
-def move_head(runs: NDArray[np.void], message: int, now_ps: int) -> int:
-    """The head of a message is at a port or link now: it takes it as soon as that is free.
+def inject(s: Run, m: Row) -> None:
+    """Take the port of the sender, which no one else uses and which its messages reach in order."""
+    m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
+    m.at, m.arrival_ps = m.source, NONE
+    m.head_ps = _take(s, injection_port(m.source), m.depart_ps, m.busy_ps) + s.latency_ps
+
+
+@njit
+def move_head(runs: NDArray[np.void], message: int) -> int:
+    """The head of a message is at a link or at the last port: it takes it as soon as that is free.
 
     Returns when the head is at the next one, or when the message arrives, which is known then.
     """
     s: Run = runs[0]
     m = messages(s)[message]
-    if m.at == NONE:
-        m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
-        m.at = m.source
-        return _take(s, injection_port(m.source), now_ps, m.busy_ps) + s.latency_ps
     if m.at == m.destination:
-        m.arrival_ps = _take(s, ejection_port(m.at), now_ps, m.busy_ps) + m.busy_ps
+        m.arrival_ps = _take(s, ejection_port(m.at), m.head_ps, m.busy_ps) + m.busy_ps
         return m.arrival_ps
     link, m.at = link_towards((s.x, s.y, s.z), m.at, m.destination)
-    return _take(s, link, now_ps, m.busy_ps) + s.hop_latency_ps
+    m.head_ps = _take(s, link, m.head_ps, m.busy_ps) + s.hop_latency_ps
+    return m.head_ps
 
 
 @njit

@@ -2,9 +2,9 @@
 
 It stays lean so that whole pictures can be run: one event per message, scheduled at its arrival
 (with contention one more at each link and port), inboxes are plain deques, and a sleeping PE has
-one event to wake it. Ties in time are ordered by the priority of an event, a whole number made of (0,
-destination, source, send number) for arrivals, of (1, PE, number) for the PEs' own instants and of
-(2, source, send number) for heads of messages at links and ports.
+one event to wake it. Ties in time are ordered by the priority of an event, a whole number made of
+(0, destination, source, send number) for arrivals, of (1, PE, number) for the PEs' own instants
+and of (2, source, send number) for heads of messages at links and ports.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
-_DEPART_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
+_HEAD_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     list(MESSAGE.names or ()).index(name)
-    for name in ("depart_ps", "arrival_ps", "number", "source", "destination")
+    for name in ("head_ps", "arrival_ps", "number", "source", "destination")
 )
 _FIRST = -1  # priority before all others of its instant
 _PROGRESS_EVERY = 4096
@@ -40,7 +40,7 @@ class SimpyRun:
         self.arrivals = 0
         self._progress = progress
         self._note_arrival = entry_point(note_arrival, state.runs, 0)
-        self._move_head = entry_point(move_head, state.runs, 0, 0)
+        self._move_head = entry_point(move_head, state.runs, 0)
         self._step = entry_point(step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
@@ -110,7 +110,7 @@ class SimpyRun:
             if self._contends:
                 message = self.state.messages[row].item()
                 priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
-                self._schedule_head(row, priority, message[_DEPART_PS])
+                self._schedule_head(row, priority, message[_HEAD_PS])
             else:
                 self._let_arrive(row)
 
@@ -122,7 +122,7 @@ class SimpyRun:
     def _move(self, head: Event) -> None:
         """The head of a message is at a port or link: it goes on, or the message arrives."""
         row, priority = head.value
-        next_ps = self._move_head(self.state.runs, row, self._environment.now)
+        next_ps = self._move_head(self.state.runs, row)
         if self.state.messages["arrival_ps"][row] != NONE:
             self._let_arrive(row)
         else:

@@ -35,13 +35,22 @@ def link_towards(shape: tuple[int, int, int], here: int, destination: int) -> tu
 
     Dimension order x, y, z, the shortest way round, halfway towards +.
     """
-    stride, axis = 1, X
-    for size in shape:
-        at, to = here // stride % size, destination // stride % size
-        if at != to:
-            is_back = 1 if 2 * ((to - at) % size) > size else 0
-            there = (at + (size - 1 if is_back else 1)) % size
-            return here * ROWS_PER_PE + axis + is_back, here + (there - at) * stride
-        stride *= size
-        axis += 2
-    return ejection_port(here), here
+    x_size, y_size, z_size = shape
+    here_row, row_to = here // x_size, destination // x_size
+    x, x_to = here - here_row * x_size, destination - row_to * x_size
+    if x != x_to:
+        return _link(here, X, 1, x_size, x, x_to)
+    z, z_to = here_row // y_size, row_to // y_size
+    y, y_to = here_row - z * y_size, row_to - z_to * y_size
+    if y != y_to:
+        return _link(here, Y, x_size, y_size, y, y_to)
+    return _link(here, Z, x_size * y_size, z_size, z, z_to)
+
+
+@njit
+def _link(here: int, row: int, stride: int, size: int, at: int, to: int) -> tuple[int, int]:
+    """The link from coordinate ``at`` of a ring of ``size`` on the way to another one."""
+    forward = to - at if to > at else to - at + size
+    if 2 * forward > size:
+        return here * ROWS_PER_PE + row + 1, here + (stride * (size - 1) if at == 0 else -stride)
+    return here * ROWS_PER_PE + row, here + (stride * (1 - size) if at + 1 == size else stride)
