@@ -19,13 +19,14 @@ from simmpp.engine.memory import messages
 from simmpp.engine.sending import inject
 from simmpp.engine.state import new_state
 from simmpp.machine.links import LINKS
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import UNLIMITED, Machine
 
 
 def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
     """(n,) when each message arrives; they are given in the order of departures and sources."""
     case = case_of(OBJECT, [], owners=(), object_bytes=(), shape=machine.shape)
-    bare = replace(machine, contention=LINKS, header_bytes=0, link_bytes_per_s=BYTE_PER_PS)
+    a_byte_a_ps = {"header_bytes": 0, "link_bytes_per_s": BYTE_PER_PS}
+    bare = replace(machine, contention=LINKS, injection_bytes_per_s=UNLIMITED, **a_byte_a_ps)
     state = new_state(
         case.workload,
         bare,
@@ -37,7 +38,7 @@ def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
     rows = np.zeros(len(traffic), MESSAGE)
     for name in ("depart_ps", "source", "number", "destination"):
         rows[name] = [getattr(sent, name) for sent in traffic]
-    rows["payload_bytes"] = [sent.busy_ps for sent in traffic]  # a byte takes 1 ps
+    rows["payload_bytes"] = [sent.busy_ps for sent in traffic]
     state._put("messages", rows)
     _drive(state.runs, np.zeros(len(traffic) + 1, EVENT_KEY), np.zeros(1, LOOP))
     return state.messages["arrival_ps"].copy()
