@@ -2,7 +2,10 @@
 
 The head of a message takes its source's injection port, the directed links of dimension-order
 routing and its destination's ejection port. Each serves whoever comes first: the head waits until
-it is free, then it is busy for the time of the message's bytes, while the head goes on.
+it is free, then it is busy for the time of the message's bytes, while the head goes on. From the
+injection port to the first link the head takes the machine's latency (as every message pays it once
+between ports, anywhere else would give the same arrivals), over each link the hop latency. Heads
+that come at the same instant are served by (source, send number).
 """
 
 from __future__ import annotations
