@@ -18,7 +18,7 @@ from simmpp.report.panels import draw
 from simmpp.report.values import Evidence
 from simmpp.report.verdict import COLUMNS, Verdict
 from simmpp.sweeps.config import Config, load_config
-from simmpp.sweeps.crew import crew_for
+from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.provenance import all_versions, result_versions

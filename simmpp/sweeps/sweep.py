@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from simmpp.sweeps.config import Config, config_from_mapping, load_config, with_key
-from simmpp.sweeps.crew import Crew, crew_for
+from simmpp.sweeps.crew import Crew
 from simmpp.sweeps.execute import outcomes as execute
+from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal, Results
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.plan import Plan, plan
