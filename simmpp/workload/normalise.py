@@ -17,8 +17,9 @@ from simmpp.scene.scene import Cone, Scene, SceneObject, Sphere
 
 Floats = NDArray[np.float64]
 
-EXPONENT_LIMIT = 1000
-"""Powers of two beyond this one would overflow on the way back."""
+EXPONENT_LIMIT = 900
+"""Scenes larger than 2 to this, or smaller than its inverse, would lose digits of their distances
+to overflow or to subnormal numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ def frame_of(scene: Scene) -> Frame:
     Raises
     ------
     SceneError
-        A coordinate or radius is not finite.
+        A coordinate or radius is not finite, or the scene is too large or too small for float64.
     """
     if not scene.objects:
         return Frame(np.zeros(3), 1.0)
@@ -64,10 +65,10 @@ def frame_of(scene: Scene) -> Frame:
     origin = points.min(axis=0)
     with np.errstate(over="ignore"):
         extent = float(((points - origin + radii).max(0) - (points - origin - radii).min(0)).max())
-    if not math.isfinite(extent):
-        raise SceneError("the scene's extent overflows", where=scene.name)
     _, exponent = math.frexp(extent)
-    exponent = max(-EXPONENT_LIMIT, min(EXPONENT_LIMIT, exponent))
+    if not (math.isfinite(extent) and abs(exponent) <= EXPONENT_LIMIT):
+        limits = f"expected 0, or from {2.0**-EXPONENT_LIMIT:.0e} to {2.0**EXPONENT_LIMIT:.0e}"
+        raise SceneError(f"the scene's extent is {extent:g}: {limits}", where=scene.name)
     return Frame(origin, math.ldexp(1.0, -exponent))
 
 

@@ -133,7 +133,7 @@ def _workload(
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, objects = map(_emptied, lists)
     rows, columns = picture.shape
-    bounds = boxes(scene.objects)
+    bounds = boxes(scene.objects, frame.origin)
     return frozen(
         Workload(
             name=scene.name,
