@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 EXPONENT_LIMIT = 900
 """Scenes larger than 2 to this, or smaller than its inverse, would lose digits of their distances
 to overflow or to subnormal numbers."""
+GRID = 2.0**-32
+"""Step of rounded lengths, normalised: a million roundings of float64, and far below any object."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +40,9 @@ class Frame:
         """(..., 3) float64 in scene units, normalised."""
         return (np.asarray(points, dtype=np.float64) - self.origin) * self.scale
 
-    def scene_points(self, points: Floats) -> Floats:
-        """(..., 3) float64 normalised, in scene units."""
-        return points / self.scale + self.origin
+    def rounded(self, lengths: Floats) -> Floats:
+        """Lengths in scene units to the nearest GRID: what is equal but for roundings is equal."""
+        return np.rint(lengths * (self.scale / GRID)) * (GRID / self.scale)
 
     def scene_lengths(self, lengths: Floats) -> Floats:
         """Normalised lengths in scene units, exact; infinity stays."""

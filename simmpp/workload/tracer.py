@@ -150,7 +150,7 @@ def _workload(
             object_kinds=geometry.kinds,
             object_triangles=geometry.n_triangles,
             object_bytes=np.array([bytes_on_the_wire(item) for item in scene.objects], np.int64),
-            object_centroids=np.ascontiguousarray(bounds.mean(axis=1)),
+            object_centroids=frame.rounded(bounds.mean(axis=1)),
         )
     )
 

@@ -206,3 +206,21 @@ def test_meshes_in_other_units_and_elsewhere(tmp_path: Path, cut: object) -> Non
     expected = moved(scene, offset)
     there = dataclasses.replace(there, camera=expected.camera, lights=expected.lights)
     compare(trace(scene, PICTURE), trace(there, PICTURE))
+
+
+@pytest.mark.parametrize("name", ["mountain:4", "tetra:5", "gears:1", "lattice:2", "rings:2"])
+def test_owners_do_not_hang_on_roundings(name: str) -> None:
+    """Units of ten and offsets round all coordinates; where centres are equal, ids still decide."""
+    scene = load_scene(name)
+    places = [scaled(scene, 1e-6), scaled(scene, 1e3), scaled(scene, 0.0254)]
+    places += [moved(scene, (1234.56, -99.1, 7.7)), moved(scene, (1e5 / 3, 1e6 / 7, -3e5 / 11))]
+    picture = simmpp.Picture(resolution=1, max_depth=1)
+    for processors in (2, 8, 37, 64, 512):
+        owners = [
+            simmpp.place(
+                trace(each, picture), processors, simmpp.Memory(), simmpp.PlacementRules(), 0
+            ).owners
+            for each in (scene, *places)
+        ]
+        for other in owners[1:]:
+            assert np.array_equal(owners[0], other)
