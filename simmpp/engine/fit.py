@@ -10,13 +10,10 @@ from numpy.typing import NDArray
 from simmpp.errors import ConfigError, WorkloadError
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import Workload
 
 
-def check_fit(
-    workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
-) -> None:
+def check_fit(workload: Workload, machine: Machine, placement: Placement) -> None:
     """Raise WorkloadError or ConfigError for what a run would trip over.
 
     Only what the engines rely on, in milliseconds; files are checked whole when they are read.
@@ -24,10 +21,6 @@ def check_fit(
     _check_workload(workload)
     _check_machine(machine)
     _check_placement(workload, machine, placement)
-    if min(policy.batch, policy.ask_at_least) < 1:
-        raise ConfigError(f"policy {policy.title}: expected batch and ask_at_least of at least 1")
-    if policy.min_load < 0 or (policy.refresh_ps or 0) < 0:
-        raise ConfigError(f"policy {policy.title}: expected no negative min_load or refresh")
 
 
 def _check_workload(workload: Workload) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from simmpp.compiled import njit
 from simmpp.errors import ConfigError
 from simmpp.scene.boxes import boxes
+from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.candidates import find_itineraries
@@ -68,6 +69,7 @@ def trace(
     ConfigError
         The picture has more than MOST_RAYS rays.
     """
+    check_scene(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)
     frame = frame_of(scene)
