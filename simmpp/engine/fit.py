@@ -7,8 +7,10 @@ from dataclasses import astuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.arguments import MOST_COUNT, require_whole
 from simmpp.errors import ConfigError, WorkloadError
 from simmpp.machine.machine import Machine
+from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.placement.placement import Placement
 from simmpp.workload.workload import Workload
 
@@ -44,9 +46,9 @@ def _check_machine(machine: Machine) -> None:
         value = numbers.pop()
         if isinstance(value, tuple):
             numbers.extend(value)
-        elif isinstance(value, int) and value < 0:
-            raise ConfigError(f"machine {machine.name}: value {value}: expected no negative cost")
-    if min(machine.quantum, *machine.shape) < 1:
+        elif not isinstance(value, str | dict):
+            require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
+    if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
 
 
