@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.errors import ConfigError, WorkloadError
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
@@ -53,6 +54,9 @@ def _check_machine(machine: Machine) -> None:
             numbers.extend(value)
         elif isinstance(value, int) and value < 0:
             raise ConfigError(f"machine {machine.name}: value {value}: expected no negative cost")
+    if machine.contention not in CONTENTIONS:
+        expected = " or ".join(CONTENTIONS)
+        raise ConfigError(f"no contention '{machine.contention}'; expected {expected}")
     if min(machine.quantum, *machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
 

@@ -23,6 +23,7 @@ from simmpp.engine.layout import (
 from simmpp.engine.memory import pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
+from simmpp.machine.links import LINKS, ROWS_PER_PE
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
@@ -107,6 +108,7 @@ def new_state(
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
+    n_links = ROWS_PER_PE * machine.processors if machine.contention == LINKS else 0
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -116,6 +118,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "test_ps": machine.test.of_objects(workload),
         "owners": placement.owners,
         "copy_costs": np.array(costs, COPY),
+        "free_ps": np.zeros(n_links, np.int64),
     }
 
 
@@ -178,6 +181,7 @@ def _parameters(
         "z": z,
         "n_objects": workload.n_objects,
         "bytes_per_s": min(limits, default=0),
+        "contends": machine.contention == LINKS,
         "transient": placement.transient,
         "row_bytes": row_bytes(placement, workload.n_objects),
         "all_resident": policy.all_resident,
