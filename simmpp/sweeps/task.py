@@ -13,6 +13,8 @@ from simmpp.policy.table import POLICIES
 from simmpp.sweeps.config import Config
 from simmpp.sweeps.grid import GridPoint
 
+NO_DATAFLOW = "replicated"
+
 
 @dataclass(frozen=True, eq=False)
 class Task:
@@ -35,6 +37,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     Raises ConfigError if the machine does not have the point's number of PEs.
     """
     config, policy = point.config, canonical(point.policy)
+    if _holds_everything(config):
+        policy = PolicyParameters(NO_DATAFLOW)
     everywhere = POLICIES[policy.name].all_resident
     memory = {} if everywhere else asdict(_canonical(config.memory))  # {}: unlike any fraction's
     rules = config.placement_rules
@@ -67,6 +71,12 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     ignored += [] if rules.asks and rules.ask_at_least is None else ["ask_at_least"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
+
+
+def _holds_everything(config: Config) -> bool:
+    """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
+    full = config.memory.bytes is None and config.memory.fraction >= 1
+    return full or config.processors == 1
 
 
 def _canonical(memory: Memory) -> Memory:
