@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit, njit_reading
 from simmpp.engine.activities import step
 from simmpp.engine.layout import BEGIN, NONE, Row, Run
 from simmpp.engine.memory import (
@@ -63,39 +63,43 @@ def run_alone(runs: NDArray[np.void]) -> bool:
 def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
     """Fill (nb,) TOTALS; False as soon as an object is missing somewhere."""
     n, n_primaries = rays(s).size, s.rays_left
-    homes, roots = _homes(s, n_primaries), np.empty(n, np.int32)
-    trees = np.zeros(n_primaries, np.int32)
-    totals["last_ray"][:] = NONE
-    offsets, objects, costs_ps = itinerary_offsets(s), itinerary_objects(s), test_ps(s)
-    for ray in range(n):
-        root = ray if ray < n_primaries else roots[ray]
-        for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
-            roots[child] = root
-        cost_ps = s.ray_ps
-        for at in range(offsets[ray], offsets[ray + 1]):
-            if not is_in_memory(s, homes[root], objects[at]):
+    homes, trees = np.empty(n_primaries, np.int32), np.zeros(n_primaries, np.int32)
+    pixels = np.empty(n, np.int32)
+    for me in range(s.processors):
+        totals[me].last_ray = NONE
+        ray = pes(s)[me].ready_first
+        while ray != NONE:
+            homes[ray], pixels[ray] = me, ray
+            if not _add_ray(s, totals[me], me, ray, pixels, trees):
                 return False
-            cost_ps += costs_ps[objects[at]]
-        total = totals[homes[root]]
-        total.compute_ps += cost_ps
-        total.tests += offsets[ray + 1] - offsets[ray]
-        if ray < n_primaries or not s.depth_first:
-            total.last_ray = ray
-        trees[root] += 1
-        total.largest_tree = max(total.largest_tree, trees[root])
+            ray = rays(s)[ray].next
+    for ray in range(n_primaries, n):
+        me = homes[pixels[ray]]
+        if not _add_ray(s, totals[me], me, ray, pixels, trees):
+            return False
     return True
 
 
-@njit
-def _homes(s: Run, n_primaries: int) -> NDArray[np.int32]:
-    """The PE that each primary ray is ready on, (n0,) int32."""
-    homes = np.empty(n_primaries, np.int32)
-    for me in range(s.processors):
-        ray = pes(s)[me].ready_first
-        while ray != NONE:
-            homes[ray] = me
-            ray = rays(s)[ray].next
-    return homes
+@njit_reading
+def _add_ray(
+    s: Run, total: Row, me: int, ray: int, pixels: NDArray[np.int32], trees: NDArray[np.int32]
+) -> bool:
+    """Add one ray to the total of its PE and to its tree; False if the PE lacks an object."""
+    offsets, objects, pixel = itinerary_offsets(s), itinerary_objects(s), pixels[ray]
+    cost_ps = s.ray_ps
+    for at in range(offsets[ray], offsets[ray + 1]):
+        if not is_in_memory(s, me, objects[at]):
+            return False
+        cost_ps += test_ps(s)[objects[at]]
+    for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
+        pixels[child] = pixel
+    if ray == pixel or not s.depth_first:
+        total.last_ray = ray
+    trees[pixel] += 1
+    total.largest_tree = max(total.largest_tree, trees[pixel])
+    total.tests += offsets[ray + 1] - offsets[ray]
+    total.compute_ps += cost_ps
+    return True
 
 
 @njit

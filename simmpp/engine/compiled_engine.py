@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.alone import run_alone
 from simmpp.engine.layout import NONE, Row, Run

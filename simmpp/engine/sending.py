@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, PACK, Run
 from simmpp.engine.memory import (
     copy_costs,
