@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
 """What messages wait for: nothing, or links and ports."""

@@ -30,8 +30,8 @@ from itertools import islice
 from statistics import fmean
 from typing import TYPE_CHECKING
 
+from simmpp.arguments import MOST_SEED
 from simmpp.sweeps.intervals import half_width
-from simmpp.sweeps.values import MOST_SEED
 
 if TYPE_CHECKING:
     from simmpp.sweeps.settings import Settings

@@ -14,7 +14,9 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.sweeps.config import Config
 from simmpp.sweeps.grid import GridPoint
-from simmpp.sweeps.methods import METHODS
+from simmpp.sweeps.methods import METHODS, SIMULATE
+
+NO_DATAFLOW = "replicated"
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +42,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     """
     config, policy = point.config, canonical(point.policy)
     settings = config.settings
+    if settings.method == SIMULATE and _holds_everything(config):
+        policy = PolicyParameters(NO_DATAFLOW)
     everywhere = POLICIES[policy.name].all_resident
     rules = config.placement_rules
     if everywhere:
@@ -74,6 +78,12 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     ignored += [] if rules.asks and rules.ask_at_least is None else ["ask_at_least"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
+
+
+def _holds_everything(config: Config) -> bool:
+    """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
+    full = config.memory.bytes is None and config.memory.fraction >= 1
+    return full or config.processors == 1
 
 
 def _canonical(memory: Memory) -> Memory:
