@@ -57,9 +57,7 @@ def summary(rows: pd.DataFrame) -> pd.DataFrame:
 
 def panels(table: pd.DataFrame) -> list[Panel]:
     """Time profits with contention over those without, which are grey."""
-    x = Scale(
-        "objects resident on each PE (% of the scene)", is_log=True, ticks=(1.6, 3, 10, 30)
-    )
+    x = Scale("objects resident on each PE (% of the scene)", is_log=True, ticks=(1.6, 3, 10, 30))
     found = []
     for bandwidth, title in DRAWN.items():
         here = table[table["machine.link_bandwidth"] == bandwidth]

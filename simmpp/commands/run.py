@@ -58,8 +58,12 @@ def run_command(
     config = load_config(config_path, overrides)
     writable(picture, "--picture", ".png")
     folder(out, "--out")
-    if config.settings.sweep:
-        notice("run simulates one point; the values under 'sweep' are for simmpp sweep")
+    settings = config.settings
+    if settings.sweep or settings.tolerance is not None:
+        notice(
+            "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
+            "are for simmpp sweep"
+        )
     run(config, out=out, picture=picture, verify=verify)
 
 
@@ -68,9 +72,9 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
     from simmpp.report.summary import summary
-    from simmpp.sweeps.point import make_point, refuse_unread
+    from simmpp.sweeps.point import make_point, refuse_models
 
-    refuse_unread(config)
+    refuse_models(config)
     if picture or verify:
         _require_scene(config, "--picture" if picture else "--verify")
     point = make_point(config, workload(config))

@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.activities import SLEEP, step
+from simmpp.engine.alone import run_alone
 from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, pop, push, replace_first
 from simmpp.engine.layout import NONE, Row, Run
 from simmpp.engine.log import note_arrival
@@ -55,7 +56,7 @@ class CompiledRun:
 
         Raises ModelError if rays are left and nothing is scheduled.
         """
-        status = FINISHED if self.state["rays_left"] == 0 else PAUSED
+        status = FINISHED if self.state["rays_left"] == 0 or self._needs_no_events() else PAUSED
         while status in (PAUSED, FULL):
             self._make_room()
             arguments = (self.state.runs, self._heap, self._lines, self._loop, EVENTS_PER_CALL)
@@ -64,6 +65,11 @@ class CompiledRun:
                 self._progress(self.state["rays_left"])
         if status == STARVED:
             raise ModelError(starved(self.state))
+
+    def _needs_no_events(self) -> bool:
+        """Was nothing remote, so that the run is at its end without any event?"""
+        records = self.state["logs"] or self.state["record_tests"]
+        return not records and run_alone(self.state.runs)
 
     def _make_room(self) -> None:
         self.state.ensure_room()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import Row
 
 INSTANT = 1 << 62

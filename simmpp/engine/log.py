@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, Run
 from simmpp.engine.memory import log, messages, pes
 from simmpp.engine.state import State

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, PACK, Row, Run
 from simmpp.engine.memory import (
     copy_costs,

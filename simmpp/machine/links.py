@@ -10,7 +10,7 @@ that come at the same instant are served by (source, send number).
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
 """What messages wait for: nothing, or links and ports."""

@@ -8,6 +8,7 @@ from functools import cache
 from importlib.resources import as_file, files
 from math import prod
 
+from simmpp.arguments import require_whole
 from simmpp.errors import ConfigError
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.machine import CopyCost, Machine, TestCost
@@ -132,9 +133,7 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
 
     Raises ConfigError otherwise.
     """
-    if not 1 <= processors <= MOST_PROCESSORS:
-        expected = f"an integer from 1 to {MOST_PROCESSORS}"
-        raise ConfigError(f"processors: value {shown(processors)}: expected {expected}")
+    require_whole("processors", processors, 1, MOST_PROCESSORS)
     if shape is not None and prod(shape) != processors:
         expected = f"three integers whose product is processors = {processors}"
         raise ConfigError(f"value {list(shape)}: expected {expected}")

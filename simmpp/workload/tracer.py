@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from simmpp.compiled import njit
 from simmpp.errors import ConfigError
 from simmpp.scene.boxes import boxes
+from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.candidates import find_itineraries
@@ -68,6 +69,7 @@ def trace(
     ConfigError
         The picture has more than MOST_RAYS rays.
     """
+    check_scene(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)
     frame = frame_of(scene)
@@ -133,7 +135,7 @@ def _workload(
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, objects = map(_emptied, lists)
     rows, columns = picture.shape
-    bounds = boxes(scene.objects)
+    bounds = boxes(scene.objects, frame.origin)
     return frozen(
         Workload(
             name=scene.name,
@@ -150,7 +152,7 @@ def _workload(
             object_kinds=geometry.kinds,
             object_triangles=geometry.n_triangles,
             object_bytes=np.array([bytes_on_the_wire(item) for item in scene.objects], np.int64),
-            object_centroids=np.ascontiguousarray(bounds.mean(axis=1)),
+            object_centroids=frame.rounded(bounds.mean(axis=1)),
         )
     )
 
