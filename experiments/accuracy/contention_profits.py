@@ -1,7 +1,8 @@
 """Does waiting for links make profits fall where each PE owns less than a tenth of the scene?
 
     simmpp sweep experiments/accuracy/contention_profits.yaml --out DIR
-    python experiments/accuracy/contention_profits.py DIR
+    simmpp sweep experiments/accuracy/contention_slower.yaml --out SLOWER
+    python experiments/accuracy/contention_profits.py DIR SLOWER
 
 Nebel 1998, section 4.2.2, sees the time profit of concurrent dataflow decrease there and supposes
 that "some messages cause wait states". Writes contention_profits.csv, a row per scene, bandwidth of
@@ -18,6 +19,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from simmpp.machine.links import CONTENTIONS, LINKS, NO_CONTENTION
 from simmpp.report.curves import Curve, Panel, Scale, Spread
 from simmpp.report.figures import NAMES
 from simmpp.report.panels import draw
@@ -63,7 +65,7 @@ def panels(table: pd.DataFrame) -> list[Panel]:
         here = table[table["machine.link_bandwidth"] == bandwidth]
         curves = []
         for scene, name in NAMES.items():
-            for contention in ("none", "links"):
+            for contention in CONTENTIONS:
                 rows = here[(here["scene"] == scene) & (here["machine.contention"] == contention)]
                 points = {
                     round(row["fraction"] * PERCENT, 1): Spread(
@@ -71,7 +73,7 @@ def panels(table: pd.DataFrame) -> list[Panel]:
                     )
                     for _, row in rows.iterrows()
                 }
-                free = contention == "none"
+                free = contention == NO_CONTENTION
                 label = "_" if free and curves else "without contention" if free else name
                 curves += [Curve(label, points, is_guide=free)] if points else []
         note = "means of 4 seeds, and their 95 % intervals"
@@ -80,12 +82,13 @@ def panels(table: pd.DataFrame) -> list[Panel]:
     return found
 
 
-def main(folder: Path) -> None:
-    """Make the table and the figure of a sweep's rows."""
-    table = summary(profits_of(pd.read_csv(folder / "results.csv")))
+def main(folders: list[Path]) -> None:
+    """Make the table and the figure of the rows of both sweeps."""
+    rows = pd.concat([pd.read_csv(folder / "results.csv") for folder in folders])
+    table = summary(profits_of(rows.fillna({"machine.contention": LINKS})))
     table.to_csv(HERE / "contention_profits.csv", index=False, float_format="%.5g")
     draw(panels(table), HERE / "contention_profits")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main([Path(folder) for folder in sys.argv[1:]])
