@@ -20,7 +20,7 @@ from simmpp.engine.layout import (
     RUN,
     Run,
 )
-from simmpp.engine.memory import pes, rays
+from simmpp.engine.memory import itinerary_offsets, pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
 from simmpp.machine.machine import Machine
@@ -154,7 +154,6 @@ def _own_arrays(
         "log": 4096,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
     marks = ("wants_marks", "partners_marks", "messages_marks")
     return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
 
@@ -207,7 +206,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pes(s)[me].open_event = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
-        rays(s)[ray].next = NONE
+        rays(s)[ray].at, rays(s)[ray].next = itinerary_offsets(s)[ray], NONE
         if pe.ready_first == NONE:
             pe.ready_first = ray
         else:
