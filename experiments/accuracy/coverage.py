@@ -188,8 +188,6 @@ def _widest(rows: Sequence[Row]) -> Iterator[Row]:
         yield max(rows[i : i + 4], key=lambda row: float(row["relative_deviation"]))
 
 
-
-
 def main(arguments: Sequence[str]) -> None:
     """Simulate, count, write."""
     grid, name = (FULL, "coverage-full") if "--full" in arguments else (SMALL, "coverage")
