@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 import click
 
+from simmpp.commands.bench import bench_command
 from simmpp.commands.check import check_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
@@ -70,6 +71,7 @@ def main() -> None:
 main.add_command(run_command)
 main.add_command(sweep_command)
 main.add_command(check_command)
+main.add_command(bench_command)
 main.add_command(machine_command)
 main.add_command(model_command)
 main.add_command(reproduce_command)
