@@ -11,6 +11,7 @@ import click
 from simmpp.commands.check import check_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
+from simmpp.commands.report import report_command
 from simmpp.commands.reproduce import reproduce_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
@@ -72,6 +73,7 @@ main.add_command(sweep_command)
 main.add_command(check_command)
 main.add_command(machine_command)
 main.add_command(model_command)
+main.add_command(report_command)
 main.add_command(reproduce_command)
 main.add_command(scene_command)
 main.add_command(workload_command)

@@ -14,9 +14,9 @@ class Spread(NamedTuple):
 
     mean: float
     low: float
-    """The least of the seeds."""
+    """The least of the seeds, or the lower end of an interval: the panel's note says which."""
     high: float
-    """The largest of the seeds."""
+    """The largest of the seeds, or the upper end."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,12 @@ class Curve:
     """By abscissa."""
     is_guide: bool = False
     """Not measured: drawn thin and grey."""
+    style: int | None = None
+    """Number of its colour and marker; its place among the panel's curves if not given."""
+    rows: dict[float, int] = field(default_factory=dict)
+    """Number of the profit that a point shows, by abscissa, where there is one."""
+    is_before: bool = False
+    """What another curve is compared with: drawn wide and pale."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,10 @@ class Scale:
     is_log: bool = False
     ticks: tuple[float, ...] = ()
     """Chosen by the plot if empty."""
+    names: tuple[str, ...] = ()
+    """What stands at the ticks, if not their numbers; values in between mean nothing."""
+    limits: tuple[float, float] | None = None
+    """Its ends, where panels are to be compared; chosen by the plot if not given."""
 
 
 @dataclass(frozen=True)
@@ -69,11 +79,15 @@ class Panel:
 
 
 def curve(
-    label: str, abscissas: Iterable[float], ratios_at: Callable[[float], Ratios], unit: float = 1
+    label: str,
+    abscissas: Iterable[float],
+    ratios_at: Callable[[float], Ratios],
+    number_at: Callable[[float], int | None] = lambda _: None,
+    unit: float = 1,
 ) -> Curve:
     """The curve of what was measured; ``unit`` scales the abscissa, 100 for per cent.
 
-    Points without a result are left out.
+    Points without a result are left out. ``number_at`` gives the number of a point, if it has one.
     """
     measured = {x: ratios_at(x) for x in abscissas}
     spreads = {
@@ -81,4 +95,5 @@ def curve(
         for x, ratios in measured.items()
         if ratios
     }
-    return Curve(label, spreads)
+    numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
+    return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})

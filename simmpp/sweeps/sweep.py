@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict
 from functools import partial
@@ -35,6 +36,10 @@ RESULTS, PARQUET, PROFITS, TIMINGS, RECORD = (
     "timings.csv",
     "run.json",
 )
+
+
+SHOWN_S, SHARE = 5.0, 20
+"""Seconds between two looks of others at a sweep that runs; times that writing may take of them."""
 
 
 class Watcher:
@@ -113,15 +118,42 @@ def _simulate(
     watcher: Watcher,
 ) -> None:
     """Run what isn't finished; the tables are written even when interrupted."""
-    try:
+    if folder is None:
         run_pending(plan, results, crew, timeout_s, watcher)
+        return
+    showing = Showing(partial(write_tables, plan, results, folder))
+    try:
+        run_pending(plan, results, crew, timeout_s, watcher, showing)
     finally:
-        if folder is not None:
-            write_tables(plan, results, folder)
+        write_tables(plan, results, folder)
+
+
+class Showing:
+    """Writes the tables of a sweep that runs now and then, for those who watch it.
+
+    At once, then every SHOWN_S seconds, or less often if writing takes more than a twentieth.
+    """
+
+    def __init__(self, write: Callable[[], None]) -> None:
+        self._write, self._next_s = write, -math.inf
+        self()
+
+    def __call__(self) -> None:
+        """Write if it is time."""
+        began_s = time.monotonic()
+        if began_s >= self._next_s:
+            self._write()
+            ended_s = time.monotonic()
+            self._next_s = ended_s + max(SHOWN_S, SHARE * (ended_s - began_s))
 
 
 def run_pending(
-    plan: Plan, results: Results, crew: Crew, timeout_s: float | None, watcher: Watcher
+    plan: Plan,
+    results: Results,
+    crew: Crew,
+    timeout_s: float | None,
+    watcher: Watcher,
+    after_each: Callable[[], None] = lambda: None,
 ) -> None:
     """Run what isn't finished; ``results`` grow one by one."""
     for text in results.notices:
@@ -132,6 +164,7 @@ def run_pending(
     for outcome in execute(pending, crew, timeout_s):
         results.add(outcome)
         watcher.simulated(outcome)
+        after_each()
 
 
 def _trace(plan: Plan, tasks: Sequence[Task], results: Results, watcher: Watcher) -> None:
