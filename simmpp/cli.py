@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 import click
 
 from simmpp.commands.check import check_command
+from simmpp.commands.compare import compare_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
 from simmpp.commands.report import report_command
@@ -71,6 +72,7 @@ def main() -> None:
 main.add_command(run_command)
 main.add_command(sweep_command)
 main.add_command(check_command)
+main.add_command(compare_command)
 main.add_command(machine_command)
 main.add_command(model_command)
 main.add_command(report_command)

@@ -34,6 +34,8 @@ class Curve:
     """Number of the profit that a point shows, by abscissa, where there is one."""
     is_before: bool = False
     """What another curve is compared with: drawn wide and pale."""
+    marked: frozenset[float] = frozenset()
+    """Abscissas of points that are to be looked at."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,11 @@ class Panel:
     """What lines and bands are."""
     legend: str = ""
     """What the curves' labels are, if that needs saying."""
+
+    @property
+    def has_bands(self) -> bool:
+        """Spreads are drawn as bands: not between names, and not over what was before."""
+        return not self.x.names and not any(curve.is_before for curve in self.curves)
 
 
 def curve(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from simmpp.report.claims_concurrent import (
@@ -87,7 +88,8 @@ def figure6(measured: Measured) -> list[Panel]:
         if x in FRACTIONS_OF_6
     ]
     linear = Curve("linear", {nb: Spread(*[nb / few] * 3) for nb in numbers}, is_guide=True)
-    title = f"Figure 6: {_name(MOUNTAIN5)}, concurrent dataflow"
+    continued = f" continued to {numbers[-1]} PEs" if numbers[-1] > MANY else ""
+    title = f"Figure 6{continued}: {_name(MOUNTAIN5)}, concurrent dataflow"
     said = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
     nb = Scale("processing elements (PEs)", is_log=True, ticks=tuple(numbers))
     gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True, ticks=ACCELERATIONS)
@@ -109,10 +111,11 @@ def rings7(measured: Measured) -> list[Panel]:
     (scene,), (nb,) = measured.scenes, measured.processors
     labels = {RAY: "ray dataflow", CONCURRENT: "concurrent dataflow", REPLICATED: "replicated"}
     times = [
-        _profit_over_x(label, measured, MAKESPAN, (scene, nb, policy))
-        for policy, label in labels.items()
+        replace(_profit_over_x(label, measured, MAKESPAN, (scene, nb, policy)), style=number)
+        for number, (policy, label) in enumerate(labels.items(), 1)
     ]
     messages = _profit_over_x(labels[CONCURRENT], measured, MESSAGES, (scene, nb, CONCURRENT))
+    messages = replace(messages, style=times[1].style)
     title = f"{_name(scene)}, {nb} PEs: "
     return [
         Panel(

@@ -30,7 +30,7 @@ GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2,
 STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
 PARTS: tuple[dict[str, Any], ...] = (
     {"facecolor": "#1f5f8b"},
-    {"facecolor": "#e8963a", "hatch": "...."},
+    {"facecolor": "#e8963a", "hatch": "\\\\\\"},
     {"facecolor": "#d5dbe1"},
     {"facecolor": "#8c62b3", "hatch": "////"},
 )
@@ -82,7 +82,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
             measured.index(curve) if curve.style is None and not curve.is_guide else curve.style
         )
         style = GUIDE if number is None else STYLES[number % len(STYLES)]
-        _draw_curve(axes, curve, style, is_line=not panel.x.names)
+        _draw_curve(axes, curve, style, panel)
     axes.set_xscale("log" if panel.x.is_log else "linear")
     axes.set_yscale("log" if panel.y.is_log else "linear")
     _divide(axes.xaxis, panel.x)
@@ -121,7 +121,7 @@ def _draw_stated(axes: Axes, stated: Stated) -> None:
     axes.add_patch(Rectangle(corner, width, height, label=stated.label or None, zorder=0, **STATED))
 
 
-def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], *, is_line: bool) -> None:
+def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -> None:
     """The mean as a line, the spread of the seeds as a band; or points with bars, if so wished."""
     xs = sorted(curve.points)
     spreads = [curve.points[x] for x in xs]
@@ -133,10 +133,10 @@ def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], *, is_line: boo
     if curve.is_before:
         axes.plot(xs, means, label=curve.label, linewidth=5, alpha=0.3, color=style["color"])
         return
-    if not is_line:
+    if panel.x.names:
         axes.vlines(xs, lows, highs, color=style["color"], linewidth=1.2)
         style = style | {"linestyle": ""}
-    else:
+    if panel.has_bands:
         axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
     axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
 

@@ -19,7 +19,7 @@ TOPICS = {
 }
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
-"""Kinds of pictures; of two of one stem the first is shown."""
+"""Kinds of pictures."""
 OWN = (*TITLES, "accounts_by_policy", "messages_by_kind", *FIGURES)
 """Beginnings of the stems of a report's own figures, which may be those of an earlier one."""
 MOST_ROWS = 200
@@ -73,14 +73,18 @@ def _found(folder: Path, patterns: Iterable[str]) -> list[Path]:
 
 
 def _pictures(folder: Path, stems: Iterable[str]) -> list[Picture]:
-    stems = list(stems)
-    chosen: dict[str, Picture] = {}
-    for suffix, kind in PICTURES.items():
-        for path in _found(folder, [f"{stem}{suffix}" for stem in stems]):
-            if path.stem not in chosen and path.stat().st_size <= MOST_BYTES:
-                encoded = base64.b64encode(path.read_bytes()).decode()
-                chosen[path.stem] = Picture(path.stem, f"data:{kind};base64,{encoded}")
-    return [chosen[stem] for stem in sorted(chosen)]
+    """Of each stem the smaller file, as text of the page."""
+    patterns = [f"{stem}{suffix}" for stem in stems for suffix in PICTURES]
+    chosen: dict[str, Path] = {}
+    for path in sorted(_found(folder, patterns), key=lambda path: -path.stat().st_size):
+        if path.stat().st_size <= MOST_BYTES:
+            chosen[path.stem] = path
+    return [_picture(chosen[stem]) for stem in sorted(chosen)]
+
+
+def _picture(path: Path) -> Picture:
+    encoded = base64.b64encode(path.read_bytes()).decode()
+    return Picture(path.stem, f"data:{PICTURES[path.suffix]};base64,{encoded}")
 
 
 def _table(path: Path) -> Table:

@@ -24,6 +24,12 @@ class Figure:
     """By what they are of; the empty text if there is only one."""
 
     @property
+    def first(self) -> int:
+        """Number of the plate that shows most, which is looked at first."""
+        sizes = [sum(map(_size, panels)) for panels in self.plates.values()]
+        return sizes.index(max(sizes)) if sizes else 0
+
+    @property
     def files(self) -> dict[str, str]:
         """The stem of each plate's files."""
         stems: dict[str, str] = {}
@@ -31,6 +37,13 @@ class Figure:
             stem = "-".join(filter(None, (self.stem, slug(plate))))
             stems[plate] = stem if stem not in stems.values() else f"{stem}-{len(stems)}"
         return stems
+
+
+def _size(panel: Panel | Bars) -> int:
+    """Points, or bars, of a panel."""
+    if isinstance(panel, Bars):
+        return len(panel.rows)
+    return sum(len(curve.points) for curve in panel.curves)
 
 
 def slug(text: str) -> str:

@@ -132,7 +132,7 @@ def wins(points: Points) -> list[Win]:
     along = abscissas(points.axes)[0]
     curves: dict[str, list[Contest]] = {}
     arrangement = arrange(points.profits, points.axes, along)
-    names = [name for name in (*arrangement.chosen, arrangement.facet) if name]
+    names = [name for name in points.axes if name in (*arrangement.chosen, arrangement.facet)]
     for each in contests(points):
         of = words.point(points.profits[each.best], names)
         curves.setdefault(of, []).append(each)

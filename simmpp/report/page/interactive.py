@@ -10,6 +10,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 from simmpp.report.bars import Bars
@@ -29,6 +30,8 @@ PARTS = {
     "loads": 2,
 }
 """Number of the colour of each part of a bar."""
+LOG_MARGIN = 1.2
+"""Room beyond the ends of a logarithmic axis."""
 LOG_STEPS, MOST_POWERS = (1, 2, 5), 4
 Drawn = dict[str, Any]
 """A piece of a figure, as JSON data."""
@@ -79,14 +82,23 @@ def _curves(panel: Panel) -> Drawn:
             traces.append(_guide(curve))
             continue
         style = style_of(panel, curve)
-        traces += [] if panel.x.names or curve.is_before else [_band(curve, style)]
+        traces += [_band(curve, style)] if panel.has_bands else []
         traces.append(_line(curve, style, panel))
-    layout = _layout(panel.x, panel.y)
+    layout = _layout(panel.x, _limited(panel))
     layout["shapes"] = [_stated(each) for each in panel.stated]
     layout["annotations"] = [_remark(each, panel) for each in panel.stated if each.label]
     if panel.level is not None:
         layout["shapes"].append(_level(panel.level))
     return {"data": traces, "layout": layout}
+
+
+def _limited(panel: Panel) -> Scale:
+    """The vertical scale, with its ends where it is logarithmic: ticks are chosen by them."""
+    spreads = [spread for curve in panel.curves for spread in curve.points.values()]
+    if panel.y.limits or not panel.y.is_log or not spreads:
+        return panel.y
+    low, high = min(each.low for each in spreads), max(each.high for each in spreads)
+    return replace(panel.y, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
 
 
 def _guide(curve: Curve) -> Drawn:
@@ -129,9 +141,20 @@ def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
             "hovertemplate": "%{text}<extra></extra>",
             "mode": mode,
             "line": line,
-            "marker": {"color": line["color"], "size": 8, "symbol": SYMBOLS[style]},
+            "marker": _markers(curve, xs, style),
         }
     )
+
+
+def _markers(curve: Curve, xs: list[float], style: int) -> Drawn:
+    """Markers, with a ring around those to be looked at."""
+    colour = f"var(--{'b' if curve.is_before else 'c'}{style})"
+    marker: Drawn = {"color": colour, "size": 8, "symbol": SYMBOLS[style], "opacity": 1}
+    if curve.marked:
+        marker["size"] = [12 if x in curve.marked else 8 for x in xs]
+        widths = [2 if x in curve.marked else 0 for x in xs]
+        marker["line"] = {"color": "var(--ink)", "width": widths}
+    return marker
 
 
 def _ends(curve: Curve, xs: list[float]) -> Drawn:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import chain
 
 from simmpp.report.curves import Curve, Panel, Scale, Spread
@@ -24,54 +25,68 @@ TITLES = {
 PROFITS, OF_MACHINE = ("time_profit", "message_profit"), ("speedup", "efficiency")
 
 
-def profit_figures(profits: Sequence[Row], axes: Axes) -> Iterator[Figure]:
+@dataclass(frozen=True)
+class Shown:
+    """The points that figures show, and those of another sweep that they are compared with."""
+
+    profits: Sequence[Row]
+    axes: Axes
+    before: Sequence[Row] = ()
+    marked: Mapping[str, frozenset[int]] = field(default_factory=dict)
+    """Numbers of points to be looked at, by measure."""
+
+    @property
+    def rows(self) -> list[Row]:
+        """All of them; numbers of points are those of ``profits``."""
+        return [*self.profits, *self.before]
+
+
+def profit_figures(shown: Shown) -> Iterator[Figure]:
     """Both profits along the best axes; speed-up and efficiency along the number of PEs."""
-    best, *others = abscissas(axes)
-    along = [best, *(name for name in others if len(axes[name]) >= ENOUGH)][:MOST_ABSCISSAS]
+    best, *others = abscissas(shown.axes)
+    along = [best, *(name for name in others if len(shown.axes[name]) >= ENOUGH)][:MOST_ABSCISSAS]
     for measure in PROFITS:
+        title, _ = TITLES[measure]
         for name in along:
-            yield _figure(profits, axes, measure, name, len(along) > 1)
-    if "processors" in axes:
+            several = len(along) > 1
+            over = f"{title} over {words.ALONG.get(name, name)}" if several else title
+            yield _figure(shown, measure, name, over, f"-over-{slug(name)}" if several else "")
+    if "processors" in shown.axes:
         for measure in OF_MACHINE:
-            yield _figure(profits, axes, measure, "processors", False)
+            yield _figure(shown, measure, "processors", TITLES[measure][0])
 
 
-def _figure(
-    profits: Sequence[Row], axes: Axes, measure: str, along: str, is_one_of_several: bool
-) -> Figure:
-    arrangement = arrange(profits, axes, along)
-    title, formula = TITLES[measure]
-    stem = measure.replace("_", "-")
-    if is_one_of_several:
-        title, stem = f"{title} over {words.ALONG.get(along, along)}", f"{stem}-over-{slug(along)}"
-    styles = styles_of(profits)
+def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = "") -> Figure:
+    rows = shown.rows
+    arrangement = arrange(rows, shown.axes, along)
     found = {
-        plate: _panels(panels, measure, arrangement, styles)
-        for plate, panels in plates(profits, arrangement).items()
+        plate: _panels(shown, panels, measure, arrangement)
+        for plate, panels in plates(rows, arrangement).items()
     }
-    return Figure(stem, title, f"{formula}; {spread_note(profits)}", found)
+    note = f"{TITLES[measure][1]}; {spread_note(rows, has_bands=not shown.before)}"
+    return Figure(measure.replace("_", "-") + suffix, title, note, found)
 
 
-def spread_note(profits: Sequence[Row]) -> str:
+def spread_note(profits: Sequence[Row], *, has_bands: bool) -> str:
     """What lines and bands are."""
     least, most = (f(row["n"] for row in profits) for f in (min, max))
     if most < 2:
         return "one seed, so nothing is known of its spread"
     seeds = f"{most} seeds" if least == most else f"{least} to {most} seeds"
-    return f"means of {seeds}, bands are 95 % intervals"
+    return f"means of {seeds}" + (", bands are 95 % intervals" if has_bands else "")
 
 
 def _panels(
-    panels: dict[str, list[tuple[int, Row]]],
+    shown: Shown,
+    panels: Mapping[str, Sequence[tuple[int, Row]]],
     measure: str,
     arrangement: Arrangement,
-    styles: dict[str, int],
 ) -> list[Panel]:
     x, places = words.abscissa(arrangement.abscissa, list(arrangement.values))
-    curves = {
-        title: list(_curves(rows, measure, arrangement, places, styles))
-        for title, rows in panels.items()
-    }
+    curves: dict[str, list[Curve]] = {}
+    for title, numbered in panels.items():
+        placed = [(number, places[row[arrangement.abscissa]], row) for number, row in numbered]
+        curves[title] = list(_curves(shown, placed, measure))
     y = _scale(TITLES[measure][0].lower(), chain(*curves.values()))
     level = 1.0 if measure in PROFITS else None
     return [Panel(title, x, y, found, level=level) for title, found in curves.items()]
@@ -88,24 +103,29 @@ def _scale(label: str, curves: Iterable[Curve]) -> Scale:
     return Scale(label, limits=(min(low, 0.0), high * MARGIN))
 
 
-def _curves(
-    rows: Sequence[tuple[int, Row]],
-    measure: str,
-    arrangement: Arrangement,
-    places: dict[object, float],
-    styles: dict[str, int],
-) -> Iterator[Curve]:
-    """One curve for each policy, in the order of their colours."""
-    for title, style in styles.items():
-        of_policy = {
-            places[row[arrangement.abscissa]]: (number, row)
-            for number, row in rows
-            if row["policy"] == title and words.is_finite(row[measure])
-        }
-        if of_policy:
-            points = {x: _spread(row, measure) for x, (_, row) in of_policy.items()}
-            numbers = {x: number for x, (number, _) in of_policy.items()}
-            yield Curve(words.policy(title), points, style=style, rows=numbers)
+Placed = tuple[int, float, Row]
+"""A point: its number, where it lies on the abscissa, its row."""
+
+
+def _curves(shown: Shown, placed: Sequence[Placed], measure: str) -> Iterator[Curve]:
+    """One curve for each policy, in the order of their colours; what was before lies behind."""
+    last = len(shown.profits)
+    finite = [each for each in placed if words.is_finite(each[2][measure])]
+    for is_before in (True, False):
+        for title, style in styles_of(shown.rows).items():
+            of = [p for p in finite if p[2]["policy"] == title and (p[0] >= last) == is_before]
+            if of:
+                points = {x: _spread(row, measure) for _, x, row in of}
+                numbers = {} if is_before else {x: number for number, x, _ in of}
+                marked = shown.marked.get(measure, frozenset())
+                yield Curve(
+                    words.policy(title),
+                    points,
+                    style=style,
+                    rows=numbers,
+                    is_before=is_before,
+                    marked=frozenset(x for x, number in numbers.items() if number in marked),
+                )
 
 
 def _spread(row: Row, measure: str) -> Spread:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +20,9 @@ from simmpp.report.page.interactive import drawn
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import Points, points_of
-from simmpp.report.page.profit_figures import profit_figures
+from simmpp.report.page.profit_figures import Shown, profit_figures
 from simmpp.report.page.render import rendered
+from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.tables import write_text
 from simmpp.units import counted
 
@@ -60,7 +62,9 @@ def report_of(folder: Folder) -> Report:
     paper = paper_figures(folder, points)
     groups = [
         Group("paper", "The paper's figures", clicking, paper),
-        Group("profits", "Profits", clicking, list(profit_figures(points.profits, points.axes))),
+        Group(
+            "profits", "Profits", clicking, list(profit_figures(Shown(points.profits, points.axes)))
+        ),
         Group("accounts", "Time and messages", "", list(bar_figures(points))),
     ]
     return Report(folder, points, [group for group in groups if group.figures])
@@ -86,6 +90,7 @@ def _values(report: Report, is_running: bool) -> dict[str, Any]:
         "wins": wins(points),
         "along": {"policy": "", "fraction": "x"}.get(along, along),
         "claims": folder.claims,
+        "verdicts": _verdicts(folder),
         "groups": [(g.id, g.name, g.text, g.figures) for g in report.groups],
         "files": not is_running,
         "has_points": any(points.runs),
@@ -111,11 +116,18 @@ def _warning(folder: Folder) -> str:
     return f"{counted(len(folder.failed), 'row')} failed: {first}{more}"
 
 
+def _verdicts(folder: Folder) -> str:
+    """How many claims hold, in part, and do not."""
+    counts = Counter(claim["holds"] for claim in folder.claims)
+    parts = [f"{counts[kind]} {kind}" for kind in (HOLDS, IN_PART, DOES_NOT) if counts[kind]]
+    return f"Of {len(folder.claims)} claims: {', '.join(parts)}."
+
+
 def _sections(report: Report, others: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    claims = [("claims", "Claims")] if report.folder.claims else []
+    claims = [("claims", "Claims")] if report.folder.claims else []  # what a reproduction is for
     depth = [("point", "One point")] if any(report.points.runs) else []
     groups = [(group.id, group.name) for group in report.groups]
-    return [("summary", "Summary"), *claims, *groups, *depth, *others, ("made", "How it was made")]
+    return [*claims, ("summary", "Summary"), *groups, *depth, *others, ("made", "How it was made")]
 
 
 def _data(report: Report, is_running: bool) -> dict[str, Any]:

@@ -71,10 +71,10 @@ def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
         scale = ON_EACH_PE if wide else Scale(ON_EACH_PE.label)
         return scale, {each: each * PERCENT for each in values}
     label = "processing elements (PEs)" if name == "processors" else name
-    if not is_log(values):
-        return Scale(label), {each: float(each) for each in values}
-    ticks = tuple(float(each) for each in values) if name == "processors" else ()
-    return Scale(label, is_log=True, ticks=ticks), {each: float(each) for each in values}
+    places = {each: float(each) for each in values}
+    if name == "processors":
+        return Scale(label, is_log=True, ticks=(*places.values(),)), places
+    return Scale(label, is_log=is_log(values)), places
 
 
 def is_number(cell: Any) -> bool:

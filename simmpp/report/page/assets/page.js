@@ -126,8 +126,9 @@
   };
   const figures = document.querySelectorAll("[data-figure]");
   figures.forEach((figure) => {
-    plate(figure, 0);
-    figure.querySelector("select")?.addEventListener("change", (event) => plate(figure, event.target.selectedIndex));
+    const select = figure.querySelector("select");
+    plate(figure, select?.selectedIndex ?? 0);
+    select?.addEventListener("change", () => plate(figure, select.selectedIndex));
   });
 
   const redraw = () => charts.forEach((_, element) => { if (element.on) draw(element); });
