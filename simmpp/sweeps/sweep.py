@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
@@ -135,8 +134,9 @@ class Showing:
     """
 
     def __init__(self, write: Callable[[], None]) -> None:
-        self._write, self._next_s = write, -math.inf
-        self()
+        self._write = write
+        write()  # takes its time to import, which is not counted
+        self._next_s = time.monotonic() + SHOWN_S
 
     def __call__(self) -> None:
         """Write if it is time."""

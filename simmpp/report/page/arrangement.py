@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -87,8 +87,21 @@ def plates(
     facet = (arrangement.facet,) if arrangement.facet else ()
     names = (*arrangement.chosen, *facet)
     numbered = sorted(enumerate(rows), key=lambda each: sort_key(each[1], names))
-    found: dict[str, dict[str, list[tuple[int, Row]]]] = {}
+    return {
+        plate: _split(of_plate, facet)
+        for plate, of_plate in _split(numbered, arrangement.chosen).items()
+    }
+
+
+def _split(
+    numbered: Iterable[tuple[int, Row]], names: Sequence[str]
+) -> dict[str, list[tuple[int, Row]]]:
+    """Rows by the values of some axes, in words; values that differ little have words that do."""
+    found: dict[tuple[Hashable, ...], list[tuple[int, Row]]] = {}
     for number, row in numbered:
-        panels = found.setdefault(words.point(row, arrangement.chosen), {})
-        panels.setdefault(words.point(row, facet), []).append((number, row))
-    return found
+        found.setdefault(tuple(row[name] for name in names), []).append((number, row))
+    said: dict[str, list[tuple[int, Row]]] = {}
+    for of in found.values():
+        text = words.point(of[0][1], names)
+        said[text if text not in said else f"{text} ({len(said) + 1})"] = of
+    return said

@@ -6,13 +6,14 @@ Policies share the draws of a seed, so they are compared seed by seed. The inter
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from statistics import fmean
 
 from simmpp.report.page.points import Points
 from simmpp.sweeps.profits import interval, ratio
 
-SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "one seed"
+SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""
 
 
@@ -25,7 +26,7 @@ class Contest:
     second: int | None
     """Of the next."""
     lead: float
-    """T(second) / T(best): the mean of the seeds' own ratios; 1 without a second."""
+    """T(second) / T(best): the mean of the seeds' own ratios; nan without common ones."""
     low: float
     high: float
     """Its 95 % interval."""
@@ -58,20 +59,31 @@ def replicated_policies(points: Points) -> set[str]:
 
 
 def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
-    ranked = sorted(flows, key=lambda n: fmean(row["makespan_ps"] for row in points.runs[n]))
+    means = _means(points, flows)
+    ranked = sorted(flows, key=lambda n: means[n])
     best, second = ranked[0], ranked[1] if len(ranked) > 1 else None
     ratios = makespan_ratios(points, second, best) if second is not None else []
-    low, high = interval(ratios) or (float("nan"), float("nan"))
+    low, high = (interval(ratios) if ratios else None) or (math.nan, math.nan)
     top = makespan_ratios(points, best, ceilings[0]) if ceilings else []
     return Contest(
         best,
         second,
-        fmean(ratios) if ratios else 1.0,
+        fmean(ratios) if ratios else math.nan,
         low,
         high,
-        _certainty(ratios, low),
+        ALONE if second is None else _certainty(ratios, low),
         fmean(top) if top else None,
     )
+
+
+def _means(points: Points, flows: list[int]) -> dict[int, float]:
+    """Mean makespans (ps) over the seeds that all have, or each its own where there are none."""
+    seeds = [{row["seed"] for row in points.runs[n]} for n in flows]
+    common = set.intersection(*seeds) or set.union(*seeds)
+    return {
+        n: fmean(row["makespan_ps"] for row in points.runs[n] if row["seed"] in common)
+        for n in flows
+    }
 
 
 def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
@@ -83,10 +95,8 @@ def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
 
 
 def _certainty(ratios: list[float], low: float) -> str:
-    if not ratios:
-        return ALONE
-    if all(each == 1 for each in ratios):
+    if ratios and all(each == 1 for each in ratios):
         return EQUAL
-    if low != low:
+    if math.isnan(low):
         return UNKNOWN
     return SURE if low > 1 else UNSURE

@@ -22,7 +22,7 @@ from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.profits import interval, ratio
 from simmpp.units import format_ps
 
-BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "one seed: not known"
+BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "too few seeds"
 MEASURES = {
     "makespan": ("makespan_ps", False),
     "messages": ("messages", False),
@@ -138,7 +138,7 @@ def _compared(before: BySeed, after: BySeed) -> tuple[list[float], str]:
             return ratios, ""
         ends = interval(ratios)
         return ratios, UNKNOWN if ends is None else _outside(1.0, 1.0, *ends)
-    if not before or not after:
+    if not before or not after or fmean(before.values()) == fmean(after.values()):
         return [1.0], ""
     one, other = interval(list(before.values())), interval(list(after.values()))
     mean = fmean(after.values()) / (fmean(before.values()) or math.inf)

@@ -67,7 +67,7 @@ def _fastest(points: Points, found: Sequence[Contest]) -> str:
 def _of_these(won: Sequence[Contest]) -> str:
     unsure = sum(each.certainty == UNSURE for each in won)
     if any(each.certainty == UNKNOWN for each in won):
-        return " (one seed: how sure is not known)"
+        return " (how sure is not known: too few seeds)"
     if not unsure:
         return ""
     return f" ({f'at {unsure} of them ' if unsure < len(won) else ''}by no more than seeds differ)"
@@ -174,7 +174,7 @@ def _runs(values: Sequence[str], places: Sequence[int]) -> str:
 
 
 def _lead(points: Points, won: Sequence[Contest]) -> str:
-    ahead = [each for each in won if each.second is not None and each.certainty != EQUAL]
+    ahead = [each for each in won if each.certainty != EQUAL and not math.isnan(each.lead)]
     seconds = {points.profits[each.second or 0]["policy"] for each in ahead}
     if not ahead:
         return ""
@@ -187,7 +187,7 @@ def _sure(won: Sequence[Contest]) -> str:
         for kind in (SURE, UNSURE, UNKNOWN, EQUAL, ALONE)
     }
     if counts[UNKNOWN]:
-        return "one seed: not known"
+        return "not known: too few seeds"
     if counts[EQUAL] == len(won):
         return "equal in every seed"
     if counts[ALONE] == len(won):

@@ -70,11 +70,11 @@ def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
         wide = max(values) >= WIDE
         scale = ON_EACH_PE if wide else Scale(ON_EACH_PE.label)
         return scale, {each: each * PERCENT for each in values}
-    label = "processing elements (PEs)" if name == "processors" else name
     places = {each: float(each) for each in values}
     if name == "processors":
-        return Scale(label, is_log=True, ticks=(*places.values(),)), places
-    return Scale(label, is_log=is_log(values)), places
+        ticks = (*places.values(),)
+        return Scale("processing elements (PEs)", is_log=True, ticks=ticks), places
+    return Scale(name, is_log=is_log(values)), places
 
 
 def is_number(cell: Any) -> bool:
