@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from simmpp.report.page import words
+from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.figure import styles_of
 from simmpp.report.page.interactive import COLOURS, PARTS
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
@@ -32,6 +33,7 @@ def depth_of(points: Points) -> dict[str, Any]:
         "colours": PARTS,
         "points": {
             "place": points.groups,
+            "name": [_name(points, row) for row in profits],
             "policy": [titles.index(row["policy"]) for row in profits],
             **{name: _column(profits, name) for name in GAINS},
         },
@@ -46,6 +48,11 @@ def _place(points: Points, number: int) -> str:
     """What the policies of a place have in common; all there is, if it is the only one."""
     profit = points.profits[number]
     return words.point(profit, points.axes or ("scene", "processors", "fraction"))
+
+
+def _name(points: Points, row: Row) -> str:
+    """All keys of a point: the same however many points there are."""
+    return "|".join(str(row[name]) for name in (*AXES, *points.further, "policy"))
 
 
 def _column(rows: Iterable[Row], name: str) -> list[Any]:

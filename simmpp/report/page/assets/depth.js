@@ -85,6 +85,8 @@
 
   const place = find("place"), policy = find("policy");
   let current = null;
+  // The address names the point by its keys: numbers change while a sweep grows.
+  const remember = () => history.replaceState(null, "", `#point=${encodeURIComponent(points.name[current])}`);
   const choose = (number, isClicked) => {
     current = number;
     const at = points.place[number], numbers = atPlace[at];
@@ -97,21 +99,21 @@
     stacked("point-messages", numbers, kinds(numbers), "Messages by kind");
     ownRows(number);
     if (!isClicked) return;
-    history.replaceState(null, "", `#point=${number}`);
+    remember();
     find("point").scrollIntoView();
   };
   place.replaceChildren(...depth.places.map((name) => made("option", {}, name)));
   place.addEventListener("change", () => {
     const numbers = atPlace[place.selectedIndex], same = numbers.find((n) => points.policy[n] === points.policy[current]);
     choose(same ?? numbers[0]);
-    history.replaceState(null, "", `#point=${current}`);
+    remember();
   });
   policy.addEventListener("change", () => {
     choose(Number(policy.value));
-    history.replaceState(null, "", `#point=${current}`);
+    remember();
   });
   document.addEventListener("chosen", (event) => choose(event.detail, true));
-  const asked = Number(/^#point=(\d+)$/.exec(location.hash)?.[1] ?? NaN);
-  choose(asked < points.place.length ? asked : data.first);
-  if (asked < points.place.length && !data.live) find("point").scrollIntoView();
+  const asked = location.hash.startsWith("#point=") ? points.name.indexOf(decodeURIComponent(location.hash.slice(7))) : -1;
+  choose(asked < 0 ? data.first : asked);
+  if (asked >= 0 && !data.live) find("point").scrollIntoView();
 })();

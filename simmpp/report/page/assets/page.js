@@ -138,11 +138,15 @@
     charts.forEach((_, element) => { if (!element.on) begin(element); });
     before = document.documentElement.dataset.theme;
     setTheme("light");
-    charts.forEach((_, element) => Plotly.relayout(element, { width: 330, height: 230, autosize: false }));
+    charts.forEach((_, element) => {
+      const [width, height] = element.closest(".one") ? [620, 300] : [330, 230];  // of A4 or letter paper
+      const smaller = { "font.size": 10, "xaxis.title.font.size": 10, "yaxis.title.font.size": 10 };
+      Plotly.relayout(element, { width, height, autosize: false, ...smaller });
+    });
   });
   addEventListener("afterprint", () => {
-    charts.forEach((_, element) => Plotly.relayout(element, { width: null, height: null, autosize: true }));
-    setTheme(before);
+    setTheme(before);  // draws all again, without what was for paper
+    charts.forEach((_, element) => Plotly.Plots.resize(element));
   });
   window.simmpp = { data, made, show, legend };
 })();
