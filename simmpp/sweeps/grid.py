@@ -6,13 +6,17 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.sweeps.axes import axes_of
 from simmpp.sweeps.config import Config, described, point_at
 from simmpp.sweeps.point import REFERENCE
+from simmpp.units import counted
 
+MOST_POINTS = 1_000_000
+"""Combinations of values and seeds of one sweep: a day's work at ten a second."""
 OWN_COLUMNS = ("scene", "processors", "memory.fraction", "policy", "method")
 """Keys that have a column in every table of rows, swept or not."""
 
@@ -52,14 +56,26 @@ def grid(config: Config) -> list[GridPoint]:
     """All points, policies with object dataflow as their reference, in the order of the axes.
 
     Raises ConfigError for values that do not go together, and for policies that are not equal but
-    would have equal rows.
+    would have equal rows, or for more than MOST_POINTS.
     """
+    _require_feasible(config)
     return [
         GridPoint(setting.config, policy, seed, setting.swept)
         for setting in _settings(config)
         for seed in config.settings.seeds
         for policy in _with_reference(setting.policies)
     ]
+
+
+def _require_feasible(config: Config) -> None:
+    """Count before anything is made of it: four axes of a thousand values are easily written."""
+    n_combinations = prod(map(len, axes_of(config.settings.sweep).values()))
+    n_seeds = len(config.settings.seeds)
+    if n_combinations * n_seeds > MOST_POINTS:
+        raise ConfigError(
+            f"sweep: {n_combinations} combinations with {counted(n_seeds, 'seed')} each: "
+            f"expected at most {MOST_POINTS} points"
+        )
 
 
 def _settings(config: Config) -> list[_Setting]:
