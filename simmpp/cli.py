@@ -56,8 +56,13 @@ def _leave_pipe() -> NoReturn:
 
 
 def _quit(message: str, code: int) -> NoReturn:
-    click.echo("simmpp: " + " ".join(message.splitlines()), err=True)
+    click.echo("simmpp: " + _printable(" ".join(message.splitlines())), err=True)
     sys.exit(code)
+
+
+def _printable(text: str) -> str:
+    """The text with control characters, which names may hold, written out."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
