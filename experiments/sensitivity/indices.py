@@ -136,7 +136,7 @@ def _bars(axes: Axes, rows: Sequence[Row]) -> None:
     for column, (shift, colour, hatch, label) in styles.items():
         axes.barh(
             [n + shift for n in range(len(rows))],
-            [max(float(row[column]), 0.0) for row in rows],
+            [float(row[column]) for row in rows],
             0.38,
             xerr=[float(row[f"{column}_conf"]) for row in rows],
             color=colour,
@@ -146,6 +146,7 @@ def _bars(axes: Axes, rows: Sequence[Row]) -> None:
             error_kw={"elinewidth": 0.8, "capsize": 1.5},
             label=label,
         )
-    axes.set_xlim(0, 1)
+    axes.set_xlim(-0.2, 1)  # an estimate of nearly nothing may be negative
+    axes.axvline(0, color="black", linewidth=0.7)
     axes.grid(axis="x", linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)

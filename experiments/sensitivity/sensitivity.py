@@ -48,7 +48,7 @@ GROUP = len(FACTORS) + 2
 SEED = 1998
 """Of the sequence and of the bootstrap."""
 PLACEMENT_SEED = 0
-CHECKED = 24
+CHECKED = 16
 """Draws that are simulated at FULL_RESOLUTION too."""
 
 Row = dict[str, str | int]
