@@ -17,7 +17,7 @@ from contextlib import closing
 from itertools import chain
 from pathlib import Path
 
-from choices import DEFAULT, SEVERAL, SINGLE, Choice, drawn, overrides_of
+from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, drawn, overrides_of
 from table import draw
 
 from simmpp.report.claims import judge
@@ -38,7 +38,7 @@ HERE = Path(__file__).parent
 PUBLISHED = HERE.parent / "nebel98" / "claims.csv"
 """The default at full fidelity."""
 FIGURES = ("figure3", "figure4", "figure6")
-RESOLUTION, SEEDS = 256, "[0]"
+SEEDS = "[0]"
 DRAWN = 8
 """Sets that are drawn from all ranges at once; a power of two."""
 
@@ -49,9 +49,9 @@ WORDS = (HOLDS, IN_PART, DOES_NOT)
 Row = dict[str, str | int]
 
 
-def plans_of(choice: Choice, resolution: int = RESOLUTION, seeds: str = SEEDS) -> dict[str, Plan]:
+def plans_of(choice: Choice) -> dict[str, Plan]:
     """What has to be simulated for each figure."""
-    size = [f"picture.resolution={resolution}", f"seeds={seeds}"]
+    size = [f"picture.resolution={choice.resolution}", f"seeds={SEEDS}"]
     return {name: plan(_config(name, choice, size)) for name in FIGURES}
 
 
@@ -61,12 +61,12 @@ def _config(figure: str, choice: Choice, size: list[str]) -> Config:
     return config_from_mapping(data, [*size, *overrides_of(choice, plain)])
 
 
-def run(plans: Iterable[Plan], journal: Journal, watcher: Watcher | None = None) -> None:
+def run(plans: Iterable[Plan], journal: Journal) -> None:
     """Simulate what isn't finished; what several choices have in common is simulated once."""
     every = list(plans)
     together = Plan(every[0].config, tuple(chain(*(each.points for each in every))), ())
     with closing(crew_for(1, None)) as crew:
-        run_pending(together, journal, crew, None, watcher or Watcher())
+        run_pending(together, journal, crew, None, Watcher())
 
 
 def verdicts(plans: dict[str, Plan], outcomes: dict[str, Outcome]) -> list[Verdict]:
@@ -122,7 +122,7 @@ def main() -> None:
     rows: list[Row] = []
     details: list[Row] = []
     with closing(Journal(folder, {"versions": result_versions()})) as journal:
-        for choice in (DEFAULT, *SINGLE, *SEVERAL, *drawn(DRAWN)):
+        for choice in (DEFAULT, *SINGLE, *SEVERAL, *FULL, *drawn(DRAWN)):
             plans = plans_of(choice)
             run(plans.values(), journal)
             judged = verdicts(plans, journal.outcomes)

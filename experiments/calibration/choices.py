@@ -33,9 +33,11 @@ class Choice:
 
     name: str
     kind: str
-    """default, constant, policy, reading, several or drawn."""
+    """default, constant, policy, reading, several, full or drawn."""
     sets: tuple[str, ...] = ()
     """``KEY=VALUE``; the rest has its default."""
+    resolution: int = 256
+    """Pixels along each side; the paper has 512."""
 
 
 def _one(kind: str, *texts: str) -> list[Choice]:
@@ -90,22 +92,31 @@ SINGLE = [
 ]
 
 FAST = "machine.send_startup=5 us; machine.receive_startup=8 us"
+SLOW = "machine.send_startup=20 us; machine.receive_startup=30 us"
+BLIND = "policy.merge_requests=false; policy.load_info=none"
 SEVERAL = _one(
     "several",
     f"placement.pixels=interleaved; {FAST}",
     "placement.pixels=interleaved; memory.residents=nearest",
     f"placement.pixels=interleaved; {AS_X}",
     "placement.pixels=interleaved; policy.ask_at_least=8",
+    f"placement.pixels=interleaved; {FAST}; machine.ray=11 us",
+    f"placement.pixels=interleaved; {FAST}; {AS_X}",
     f"placement.pixels=interleaved; {FAST}; memory.residents=nearest; policy.ask_at_least=8",
     "policy.ask_at_least=8; policy.min_load=50%",
     "policy.ask_at_least=8; memory.residents=nearest",
     "policy.ask_at_least=8; machine.test=1 us",
-    "policy.merge_requests=false; policy.load_info=none",
-    "policy.merge_requests=false; policy.load_info=none; placement.pixels=tiles",
-    "policy.merge_requests=false; policy.load_info=none; placement.pixels=random; "
-    "memory.residents=nearest",
+    BLIND,
+    f"{BLIND}; placement.pixels=tiles",
+    f"{BLIND}; placement.pixels=random; memory.residents=nearest",
+    f"{BLIND}; placement.pixels=random; memory.residents=nearest; {SLOW}",
 )
 """Combinations of choices that, alone, make some claim hold or come near to it."""
+FULL = [
+    Choice(f"{text}, at 512 x 512", "full", tuple(text.split("; ")), resolution=512)
+    for text in (f"placement.pixels=interleaved; {AS_X}", "policy.ask_at_least=8")
+]
+"""Sets for which more claims hold than for the default, at full resolution."""
 
 
 def drawn(number: int) -> list[Choice]:
