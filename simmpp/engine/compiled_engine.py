@@ -119,9 +119,9 @@ def _run(
 
 @njit
 def _short_of_room(s: Run) -> bool:
-    room = s.messages_n - messages_marks(s)[USED]
-    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
-    return short or (s.logs and s.n_logged >= s.log_n - 2)
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    short = s.messages_n - messages_marks(s)[USED] < most
+    return short or (s.logs and s.log_n - s.n_logged < most + 2)
 
 
 @njit

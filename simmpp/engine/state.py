@@ -20,6 +20,7 @@ from simmpp.engine.layout import (
     RUN,
     Run,
 )
+from simmpp.engine.log import EventLog
 from simmpp.engine.memory import pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
@@ -29,6 +30,9 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.workload.workload import Workload
 
+LOG_ROWS = 1 << 13
+"""Rows of the event log that are kept before they are handed on: half a megabyte."""
+
 
 class State:
     """One run: arrays by name, and the record that compiled code gets.
@@ -37,7 +41,10 @@ class State:
     that are touched; the table of messages grows.
     """
 
-    def __init__(self, arrays: Arrays, parameters: dict[str, int]) -> None:
+    def __init__(
+        self, arrays: Arrays, parameters: dict[str, int], log: EventLog | None = None
+    ) -> None:
+        self.log = log
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
@@ -71,10 +78,17 @@ class State:
         """See to it that all messages that one more step can send at most have a place."""
         room = len(self.messages) - self.arrays["messages_marks"][USED]
         most_sent = len(self.arrays["outbox"])
-        if room < most_sent and room < self["rays_left"] + 2 * len(self.pes):
+        most = min(most_sent, self["rays_left"] + 2 * len(self.pes))
+        if room < most:
             self._grow("messages", most_sent)
-        if self["logs"] and self["n_logged"] >= len(self.arrays["log"]) - 2:
-            self._grow("log", 0)
+        if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
+            self.drain_log()
+
+    def drain_log(self) -> None:
+        """Hand the rows of the event log on; their places are used again."""
+        if self.log is not None:
+            self.log.take(self.arrays["log"][: self["n_logged"]])
+            self.runs["n_logged"] = 0
 
     def _grow(self, name: str, more: int) -> None:
         """Double an array, and a little more."""
@@ -92,15 +106,20 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
-    log: bool = False,
+    log: EventLog | None = None,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     everything = POLICIES[parameters.name].all_resident
-    arrays = _own_arrays(workload, placement, parameters, workload.n_tests if record_tests else 0)
+    n_recorded = workload.n_tests if record_tests else 0
+    arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    flags = {"depth_first": ready_order == "depth-first", "record_tests": record_tests, "logs": log}
-    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags)
+    flags = {
+        "depth_first": ready_order == "depth-first",
+        "record_tests": record_tests,
+        "logs": log is not None,
+    }
+    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
     return state
@@ -120,7 +139,12 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
 
 
 def _own_arrays(
-    workload: Workload, placement: Placement, parameters: PolicyParameters, n_recorded: int
+    workload: Workload,
+    placement: Placement,
+    parameters: PolicyParameters,
+    n_recorded: int,
+    *,
+    logs: bool,
 ) -> Arrays:
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     n_wants = 1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1))
@@ -151,7 +175,7 @@ def _own_arrays(
         "sort_items": max(n_objects, nb),
         "tested_rays": n_recorded,
         "tested_objects": n_recorded,
-        "log": 4096,
+        "log": LOG_ROWS + most_sent + 2 if logs else 0,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
     arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
@@ -204,7 +228,6 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     for me in range(s.processors):
         pes(s)[me].ready_first = NONE
         pes(s)[me].ready_last = NONE
-        pes(s)[me].open_event = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
         rays(s)[ray].next = NONE

@@ -79,6 +79,7 @@ class World:
         rays: tuple[int, ...] = (),
     ) -> int:
         """Pack a message and let it depart; returns the time of that."""
+        begin = clock
         cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
         clock = self.pay("communication", pe, clock, cost)
         arrival = clock + network_ps(self.machine, pe.number, destination, payload_bytes)
@@ -99,6 +100,7 @@ class World:
         if kind in (OBJECT, RAYS):
             pe.partners.add(destination)
         self.ledger.sent.append(message)
+        self.ledger.did(pe, begin, "send", clock, message)
         key = (arrival, 0, destination, pe.number, message.send_number)
         heapq.heappush(self.queue, (key, "arrive", message))
         return clock
