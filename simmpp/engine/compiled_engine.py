@@ -78,7 +78,7 @@ class CompiledRun:
             raise ModelError(starved(self.state))
 
     def _make_room(self) -> None:
-        self.state.ensure_room()
+        self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)
         needed = len(self.state.messages) + len(self._lines) + 1
         if len(self._heap) < needed:
             heap = np.zeros(needed, EVENT_KEY)

@@ -7,7 +7,7 @@ is handed on whenever it is full.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,18 @@ from simmpp.compiled import njit
 from simmpp.engine.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.memory import log, messages, pes
 
+LOG_ROWS = 1 << 13
+"""Rows that are kept before they are handed on: half a megabyte."""
 EVENT_KINDS = ("arrival", "receive", "compute", "send")
 """Names of the field ``event``: ARRIVAL, RECEIVE, COMPUTE, SEND."""
 
 _WORDS = EVENT.itemsize // 8
 
 Sink = Callable[[NDArray[np.void]], None]
-"""Gets (n,) EVENT rows, those of a PE in the order of time, which are its own until it returns."""
+"""Gets rows (n,) EVENT, which are its own until it returns: all that ended since the last call.
+
+The rows of a PE come in the order of time; what comes later ends later.
+"""
 
 
 @njit
@@ -74,61 +79,59 @@ def _note_message(s: Run, message: int, other: int) -> None:
     event.number, event.payload_bytes = m.number, m.payload_bytes
 
 
-class EventLog:
-    """Hands rows on as soon as the end of the run can't cut them short any more."""
+def hand_on(rows: NDArray[np.void], now_ps: int, sink: Sink) -> int:
+    """Hand on what is over at ``now_ps``, the time of the next event; the rest moves to the front.
 
-    def __init__(self, sink: Sink) -> None:
-        self._sink = sink
-        self._held = np.zeros(0, EVENT)
+    Rows are written when they begin, and the run may end before they do. Returns how many are left.
+    """
+    late = np.flatnonzero(rows["end_ps"] > now_ps)
+    n = len(rows) - len(late)
+    if len(late) == 0:
+        sink(rows)
+        return 0
+    words = _words(rows)
+    held = words[late]
+    _close_gaps(words, late)
+    sink(rows[:n])
+    words[: len(late)] = held
+    return len(late)
 
-    def take(self, rows: NDArray[np.void]) -> None:
-        """Take new rows, which the caller will overwrite.
 
-        A row that is no send begins at the time of the event that wrote it, so nothing that ends
-        before the last of these is concerned by what is still to come.
-        """
-        happened = np.flatnonzero(rows["event"] != SEND)
-        now_ps = int(rows["time_ps"][happened[-1]]) if len(happened) else NONE
-        still_held = self._held["end_ps"] > now_ps
-        late = np.flatnonzero(rows["end_ps"] > now_ps)  # begun lately, so among the last rows
-        n = int(late[0]) if len(late) else len(rows)
-        self._sink(chosen(self._held, ~still_held))
-        self._sink(rows[:n])
-        self._held = join([chosen(self._held, still_held), rows[n:]])
+@njit
+def _close_gaps(words: NDArray[np.int64], gaps: NDArray[np.int64]) -> None:
+    """Move rows forward over those numbered ``gaps``; in place, as new memory costs more."""
+    to, gap = gaps[0], 0
+    for row in range(gaps[0], len(words)):
+        if gap < gaps.size and gaps[gap] == row:
+            gap += 1
+        else:
+            for word in range(words.shape[1]):
+                words[to, word] = words[row, word]
+            to += 1
 
-    def close(self, makespan_ps: int) -> None:
-        """The run is over: what goes on ends here, and what has not departed never will."""
-        rows = self._held
-        cut = rows["end_ps"] > makespan_ps
-        rows["end_ps"][cut] = makespan_ps
-        rows["number"][cut & (rows["event"] == SEND)] = NONE
-        self._sink(chosen(rows, ~cut | (rows["time_ps"] < makespan_ps)))
+
+def hand_on_last(rows: NDArray[np.void], makespan_ps: int, sink: Sink) -> None:
+    """The run is over: what goes on ends here, and what has not departed never will."""
+    rows["end_ps"] = makespan_ps
+    rows["number"][rows["event"] == SEND] = NONE
+    begun = rows["time_ps"] < makespan_ps
+    sink(_words(rows)[begun].view(EVENT)[:, 0])
 
 
 class Collector:
     """A sink that keeps all rows."""
 
     def __init__(self) -> None:
-        self._parts: list[NDArray[np.void]] = []
+        self._parts = [np.zeros((0, _WORDS), np.int64)]
 
     def __call__(self, rows: NDArray[np.void]) -> None:
-        self._parts.append(join([rows]))
+        self._parts.append(_words(rows).copy())
 
     def rows(self) -> NDArray[np.void]:
         """All rows, (n,) EVENT."""
-        return join(self._parts)
-
-
-def join(parts: Sequence[NDArray[np.void]]) -> NDArray[np.void]:
-    """Rows one after the other; numpy copies words ten times as fast as records of fields."""
-    words = [np.zeros((0, _WORDS), np.int64), *map(_words, parts)]
-    return np.concatenate(words).view(EVENT)[:, 0]
-
-
-def chosen(rows: NDArray[np.void], which: NDArray[np.bool_]) -> NDArray[np.void]:
-    """The rows where ``which`` (n,) is true."""
-    return np.compress(which, _words(rows), axis=0).view(EVENT)[:, 0]
+        return np.concatenate(self._parts).view(EVENT)[:, 0]
 
 
 def _words(rows: NDArray[np.void]) -> NDArray[np.int64]:
+    """The same memory: numpy copies words ten times as fast as records."""
     return rows.view(np.int64).reshape(-1, _WORDS)

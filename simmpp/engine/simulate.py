@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.fit import check_fit
 from simmpp.engine.layout import NONE
-from simmpp.engine.log import Collector, EventLog, Sink
+from simmpp.engine.log import Collector, Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State, new_state
@@ -63,16 +63,14 @@ def simulate(
         policy,
         ready_order=ready_order,
         record_tests=record_tests,
-        log=None if sink is None else EventLog(sink),
+        log=sink,
     )
     run = ENGINES[engine](state, progress)
     try:
         run.run()
     except OverflowError:
         raise beyond_the_clock() from None
-    if state.log is not None:
-        state.drain_log()
-        state.log.close(state["last_ray_ps"])
+    state.close_log()
     rows = collector.rows() if log is True else None
     return _conclude(state, run.arrivals, policy, engine, rows)
 

@@ -20,7 +20,7 @@ from simmpp.engine.layout import (
     RUN,
     Run,
 )
-from simmpp.engine.log import EventLog
+from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
 from simmpp.engine.memory import pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
@@ -30,10 +30,6 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.workload.workload import Workload
 
-LOG_ROWS = 1 << 13
-"""Rows of the event log that are kept before they are handed on: half a megabyte."""
-
-
 class State:
     """One run: arrays by name, and the record that compiled code gets.
 
@@ -42,9 +38,10 @@ class State:
     """
 
     def __init__(
-        self, arrays: Arrays, parameters: dict[str, int], log: EventLog | None = None
+        self, arrays: Arrays, parameters: dict[str, int], log: Sink | None = None
     ) -> None:
         self.log = log
+        """What gets the event log, if there is one."""
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
@@ -74,21 +71,30 @@ class State:
         """(capacity,) MESSAGE: those in flight or in an inbox, and free places."""
         return self.arrays["messages"]
 
-    def ensure_room(self) -> None:
-        """See to it that all messages that one more step can send at most have a place."""
+    def ensure_room(self, now_ps: int) -> None:
+        """See to it that all messages that one more step can send at most have a place.
+
+        ``now_ps`` is the time of that step.
+        """
         room = len(self.messages) - self.arrays["messages_marks"][USED]
         most_sent = len(self.arrays["outbox"])
         most = min(most_sent, self["rays_left"] + 2 * len(self.pes))
         if room < most:
             self._grow("messages", most_sent)
         if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
-            self.drain_log()
+            self.runs["n_logged"] = hand_on(self._logged(), now_ps, self.log)
+            if len(self.arrays["log"]) < self["n_logged"] + most + LOG_ROWS:
+                self._grow("log", 0)
 
-    def drain_log(self) -> None:
-        """Hand the rows of the event log on; their places are used again."""
+    def close_log(self) -> None:
+        """Hand on what is left of the event log."""
         if self.log is not None:
-            self.log.take(self.arrays["log"][: self["n_logged"]])
-            self.runs["n_logged"] = 0
+            end_ps = self["last_ray_ps"]
+            self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
+            hand_on_last(self._logged(), end_ps, self.log)
+
+    def _logged(self) -> NDArray[np.void]:
+        return self.arrays["log"][: self["n_logged"]]
 
     def _grow(self, name: str, more: int) -> None:
         """Double an array, and a little more."""
@@ -106,7 +112,7 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
-    log: EventLog | None = None,
+    log: Sink | None = None,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     everything = POLICIES[parameters.name].all_resident
@@ -175,7 +181,7 @@ def _own_arrays(
         "sort_items": max(n_objects, nb),
         "tested_rays": n_recorded,
         "tested_objects": n_recorded,
-        "log": LOG_ROWS + most_sent + 2 if logs else 0,
+        "log": 2 * LOG_ROWS + most_sent if logs else 0,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
     arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
