@@ -125,6 +125,7 @@ class Collector:
         self._parts = [np.zeros((0, _WORDS), np.int64)]
 
     def __call__(self, rows: NDArray[np.void]) -> None:
+        """Keep these."""
         self._parts.append(_words(rows).copy())
 
     def rows(self) -> NDArray[np.void]:

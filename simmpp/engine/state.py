@@ -30,6 +30,7 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.workload.workload import Workload
 
+
 class State:
     """One run: arrays by name, and the record that compiled code gets.
 
@@ -37,9 +38,7 @@ class State:
     that are touched; the table of messages grows.
     """
 
-    def __init__(
-        self, arrays: Arrays, parameters: dict[str, int], log: Sink | None = None
-    ) -> None:
+    def __init__(self, arrays: Arrays, parameters: dict[str, int], log: Sink | None = None) -> None:
         self.log = log
         """What gets the event log, if there is one."""
         self.arrays: dict[str, NDArray[Any]] = {}
@@ -83,7 +82,7 @@ class State:
             self._grow("messages", most_sent)
         if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
             self.runs["n_logged"] = hand_on(self._logged(), now_ps, self.log)
-            if len(self.arrays["log"]) < self["n_logged"] + most + LOG_ROWS:
+            if len(self.arrays["log"]) - self["n_logged"] < most + 2 + LOG_ROWS:
                 self._grow("log", 0)
 
     def close_log(self) -> None:
