@@ -156,7 +156,7 @@ class Timeline:
 
 
 def _before(pes: Rows, values: Times, last: Times) -> Times:
-    """What each row's PE had in its row before, or in ``last`` (nb,), which is brought up to date."""
+    """What each row's PE had in its row before, or in ``last`` (nb,), which is then renewed."""
     by_pe = np.argsort(pes, kind="stable")
     sorted_pes, sorted_values = pes[by_pe], values[by_pe]
     is_first = np.diff(sorted_pes, prepend=NONE) != 0
