@@ -72,7 +72,7 @@ class CompiledRun:
         return not records and run_alone(self.state.runs)
 
     def _make_room(self) -> None:
-        self.state.ensure_room()
+        self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)
         needed = len(self.state.messages) + len(self._lines) + 1
         if len(self._heap) < needed:
             heap = np.zeros(needed, EVENT_KEY)
@@ -115,9 +115,9 @@ def _run(
 
 @njit
 def _short_of_room(s: Run) -> bool:
-    room = s.messages_n - messages_marks(s)[USED]
-    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
-    return short or (s.logs and s.n_logged >= s.log_n - 2)
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    short = s.messages_n - messages_marks(s)[USED] < most
+    return short or (s.logs and s.log_n - s.n_logged < most + 2)
 
 
 @njit

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from simmpp.engine.log import Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.machine.machine import Machine
@@ -91,14 +92,17 @@ def run_point(
     point: Point,
     *,
     record_tests: bool = False,
+    log_of: Callable[[PolicyParameters], Sink] | None = None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
     """Simulate the policies one after the other, yielding each as it is finished.
 
-    ``progress(title, rays left)`` is called now and then.
+    ``log_of`` gives what gets the event log of a policy's run. ``progress(title, rays left)`` is
+    called now and then.
     """
     for parameters, named in policies_of(point.config):
-        yield _run(point, parameters, named, record_tests, progress)
+        log = False if log_of is None else log_of(parameters)
+        yield _run(point, parameters, named, record_tests, log, progress)
 
 
 def _run(
@@ -106,6 +110,7 @@ def _run(
     parameters: PolicyParameters,
     named: bool,
     record_tests: bool,
+    log: bool | Sink,
     progress: Callable[[str, int], None] | None,
 ) -> PolicyRun:
     def report(rays_left: int) -> None:
@@ -121,6 +126,7 @@ def _run(
         parameters,
         engine=settings.engine,
         ready_order=settings.ready_order,
+        log=log,
         record_tests=record_tests,
         progress=report,
     )
