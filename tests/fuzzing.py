@@ -116,7 +116,7 @@ def changed_words(data: st.DataObject, words: Sequence[str], others: st.SearchSt
 def written(node: Any) -> str:
     """A tree of mappings (lists of pairs, so that keys may repeat), lists and raw words as YAML."""
     if isinstance(node, tuple):
-        return "{" + ", ".join(f"{key}: {written(value)}" for key, value in node) + "}"
+        return "{" + ", ".join(f"{written(key)}: {written(value)}" for key, value in node) + "}"
     if isinstance(node, list):
         return "[" + ", ".join(map(written, node)) + "]"
     return str(node)
@@ -140,7 +140,7 @@ def mutated(data: st.DataObject, node: Any, words: st.SearchStrategy[Any]) -> An
                             [(key, [value])],
                             [(key, ((key, value),))],
                             [(data.draw(words), value)],
-                            [(key + "x", value)],
+                            [(written(key) + "x", value)],
                             [(key, value), (data.draw(words), data.draw(words))],
                         ]
                     )
