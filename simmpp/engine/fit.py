@@ -7,8 +7,9 @@ from dataclasses import astuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.arguments import MOST_COUNT, require_whole
+from simmpp.arguments import MOST_COUNT, require_whole, require_word
 from simmpp.errors import ConfigError, WorkloadError
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import Machine
 from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.placement.placement import Placement
@@ -48,6 +49,7 @@ def _check_machine(machine: Machine) -> None:
             numbers.extend(value)
         elif not isinstance(value, str | dict):
             require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
+    require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
 

@@ -117,6 +117,7 @@ def machine(
         torus_shape(processors, shape or overrides.shape),
         chosen.constants.flat() | changed,
         sources | dict.fromkeys(changed, OVERRIDDEN),
+        overrides.contention,
     )
 
 
@@ -139,7 +140,9 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
     return shape or default_shape(processors)
 
 
-def _machine(name: str, shape: Shape, value: dict[str, int], sources: dict[str, str]) -> Machine:
+def _machine(
+    name: str, shape: Shape, value: dict[str, int], sources: dict[str, str], contention: str
+) -> Machine:
     def copies(key: str) -> tuple[CopyCost, CopyCost, CopyCost, CopyCost]:
         request, object_, rays, load = (
             CopyCost(value[f"{key}.{kind}.fixed"], value[f"{key}.{kind}.bandwidth"])
@@ -171,5 +174,6 @@ def _machine(name: str, shape: Shape, value: dict[str, int], sources: dict[str, 
         ),
         ray_ps=value["ray"],
         quantum=value["quantum"],
+        contention=contention,
         sources=sources,
     )

@@ -29,3 +29,9 @@ def place(
         transient=memory.transient,
         pixel_pes=pixel_pes(rules.pixels, workload.picture, processors, seed),
     )
+
+
+def draws(memory: Memory, rules: PlacementRules) -> bool:
+    """Whether the seed has a part in a placement; otherwise it is the same for every seed."""
+    residents = memory.residents == "random" and (memory.bytes is not None or memory.fraction < 1)
+    return residents or "random" in (rules.owners, rules.pixels)
