@@ -72,17 +72,19 @@ def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = ""
         plate: _panels(shown, panels, measure, arrangement)
         for plate, panels in plates(rows, arrangement).items()
     }
-    note = f"{TITLES[measure][1]}; {spread_note(rows, has_bands=not shown.before)}"
+    numeric = all(map(words.is_number, arrangement.values))
+    spread = "" if shown.before else f", {'bands' if numeric else 'bars'} are 95 % intervals"
+    note = f"{TITLES[measure][1]}; {spread_note(rows, spread)}"
     return Figure(measure.replace("_", "-") + suffix, title, note, found)
 
 
-def spread_note(profits: Sequence[Row], *, has_bands: bool) -> str:
+def spread_note(profits: Sequence[Row], spread: str) -> str:
     """What lines and bands are."""
     least, most = (f(row["n"] for row in profits) for f in (min, max))
     if most < 2:
         return "one seed, so nothing is known of its spread"
     seeds = f"{most} seeds" if least == most else f"{least} to {most} seeds"
-    return f"means of {seeds}" + (", bands are 95 % intervals" if has_bands else "")
+    return f"means of {seeds}{spread}"
 
 
 def _panels(
