@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import Run
 from simmpp.engine.memory import object_bytes, pes, rays, recent, want_rows, wants
 from simmpp.engine.ready import make_ready

@@ -213,6 +213,12 @@ def tested_objects(s: Run) -> Any:
 
 
 @njit
+def free_ps(s: Run) -> Any:
+    """(8 nb,) int64, or empty: see ``machine.links``."""
+    return carray(_pointer(s.free_ps_at), s.free_ps_n, I8)
+
+
+@njit
 def log(s: Run) -> Any:
     """(capacity,) EVENT, or empty."""
     return carray(_pointer(s.log_at), s.log_n, EVENT)

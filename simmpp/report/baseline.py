@@ -18,10 +18,10 @@ from typing import Any
 
 from simmpp.errors import ConfigError
 from simmpp.report.compare import Tables
+from simmpp.sweeps.columns import COLUMNS
 from simmpp.sweeps.config import Config, config_from_mapping, described
 from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.provenance import difference
-from simmpp.sweeps.rows import COLUMNS
 from simmpp.sweeps.tables import read_csv, replaced, write_text
 
 PROFITS, RESULTS, RECORD = "profits.csv", "results.csv", "run.json"

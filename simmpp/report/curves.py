@@ -21,13 +21,15 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """A line with a band around it."""
+    """A line with a band around it; those with one label look the same."""
 
     label: str
     points: dict[float, Spread]
     """By abscissa."""
     is_guide: bool = False
     """Not measured: drawn thin and grey."""
+    said: dict[float, str] = field(default_factory=dict)
+    """What is written beside points, by abscissa."""
     style: int | None = None
     """Number of its colour and marker; its place among the panel's curves if not given."""
     rows: dict[float, int] = field(default_factory=dict)

@@ -76,12 +76,9 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         _draw_stated(axes, stated)
     if panel.level is not None:
         axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
-    measured = [curve for curve in panel.curves if not curve.is_guide]
+    labels = list(dict.fromkeys(curve.label for curve in panel.curves if not curve.is_guide))
     for curve in panel.curves:
-        number = (
-            measured.index(curve) if curve.style is None and not curve.is_guide else curve.style
-        )
-        style = GUIDE if number is None else STYLES[number % len(STYLES)]
+        style = GUIDE if curve.is_guide else STYLES[_number(curve, labels) % len(STYLES)]
         _draw_curve(axes, curve, style, panel)
     axes.set_xscale("log" if panel.x.is_log else "linear")
     axes.set_yscale("log" if panel.y.is_log else "linear")
@@ -91,11 +88,31 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         axes.set_ylim(*panel.y.limits)
     elif not panel.y.is_log:
         axes.set_ylim(bottom=0)
+    if any(curve.said for curve in panel.curves):
+        axes.margins(y=0.14)  # room for what is written above the highest point
     axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
     if panel.curves:
-        axes.legend(title=panel.legend or None, fontsize=8, title_fontsize=8, handlelength=3.2)
+        _draw_legend(axes, panel.legend)
+
+
+def _number(curve: Curve, labels: list[str]) -> int:
+    """Of its style: curves of one label look alike."""
+    return labels.index(curve.label) if curve.style is None else curve.style
+
+
+def _draw_legend(axes: Axes, title: str) -> None:
+    """Each label once."""
+    handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    axes.legend(
+        handles.values(),
+        handles.keys(),
+        title=title or None,
+        fontsize=8,
+        title_fontsize=8,
+        handlelength=3.2,
+    )
 
 
 def _draw_bars(axes: Axes, bars: Bars) -> None:
@@ -139,6 +156,9 @@ def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -
     if panel.has_bands:
         axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
     axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
+    for x, text in curve.said.items():
+        place = (x, curve.points[x].mean)
+        axes.annotate(text, place, (3, 3), textcoords="offset points", fontsize=6.5)
 
 
 def _divide(axis: Axis, scale: Scale) -> None:

@@ -17,12 +17,13 @@ from simmpp.report.modelled import reproduce_figure2
 from simmpp.report.panels import draw
 from simmpp.report.values import Evidence
 from simmpp.report.verdict import COLUMNS, Verdict
+from simmpp.sweeps.columns import result_columns
 from simmpp.sweeps.config import Config, load_config
-from simmpp.sweeps.crew import crew_for
+from simmpp.sweeps.frontier import Frontier
+from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.provenance import all_versions, result_versions
-from simmpp.sweeps.rows import result_columns
 from simmpp.sweeps.sweep import Watcher, run_pending
 from simmpp.sweeps.tables import Row, write_csv, write_text
 from simmpp.sweeps.workloads import workload_of
@@ -71,7 +72,7 @@ def reproduce(
     with closing(Journal(out, {"versions": result_versions()})) as journal:
         pending = sum(not journal.finished(task.key) for task in everything.tasks)
         with closing(crew_for(max(1, min(workers, pending)), None)) as crew:
-            run_pending(everything, journal, crew, None, watcher or Watcher())
+            run_pending(Frontier(everything, journal), journal, crew, None, watcher or Watcher())
         rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
         model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)

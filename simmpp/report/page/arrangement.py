@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.report.page import words
-from simmpp.sweeps.rows import KEYS
+from simmpp.sweeps.columns import KEYS
 from simmpp.sweeps.tables import Row, sort_key
 
 AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))

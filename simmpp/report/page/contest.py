@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from simmpp.report.page.points import Points
-from simmpp.sweeps.profits import interval, ratio
+from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.profits import ratio
 
 SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""

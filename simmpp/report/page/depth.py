@@ -10,8 +10,8 @@ from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.figure import styles_of
 from simmpp.report.page.interactive import COLOURS, PARTS
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
+from simmpp.sweeps.columns import NUMBERS
 from simmpp.sweeps.profits import MEASURES, STATISTICS
-from simmpp.sweeps.rows import NUMBERS
 from simmpp.sweeps.tables import Row
 
 EXACT = 2**53

@@ -18,8 +18,9 @@ from simmpp.report.page import words
 from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
+from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.profits import interval, ratio
+from simmpp.sweeps.profits import ratio
 from simmpp.units import format_ps
 
 BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "too few seeds"

@@ -13,7 +13,8 @@ from typing import Any
 from simmpp.errors import ConfigError
 from simmpp.report.reproduce import CLAIMS, EXPERIMENTS
 from simmpp.report.verdict import COLUMNS as CLAIM_COLUMNS
-from simmpp.sweeps.rows import COLUMNS, KEYS, NUMBERS, in_order
+from simmpp.sweeps.columns import COLUMNS, KEYS, NUMBERS
+from simmpp.sweeps.rows import in_order
 from simmpp.sweeps.sweep import RECORD, RESULTS, TIMINGS
 from simmpp.sweeps.tables import Row, read_csv
 

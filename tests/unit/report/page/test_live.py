@@ -9,6 +9,7 @@ import pytest
 from sweep_rows import sweep, written
 
 from simmpp.report.page import live
+from simmpp.sweeps import showing
 from simmpp.sweeps import sweep as running
 from simmpp.sweeps.journal import FILE, Journal, is_at_work
 from simmpp.sweeps.outcome import Outcome
@@ -44,8 +45,8 @@ def test_the_page_is_written_again_until_the_sweep_is_done(
 def test_tables_are_there_while_a_sweep_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(running, "SHOWN_S", 0.0)
-    monkeypatch.setattr(running, "SHARE", 0)
+    monkeypatch.setattr(showing, "SHOWN_S", 0.0)
+    monkeypatch.setattr(showing, "SHARE", 0)
     lines = []
 
     class Looking(running.Watcher):
@@ -70,9 +71,9 @@ def test_writing_tables_takes_no_more_than_its_share(monkeypatch: pytest.MonkeyP
         written_at.append(now_s)
         now_s += 1.0
 
-    monkeypatch.setattr(running.time, "monotonic", lambda: now_s)
-    showing = running.Showing(write)
+    monkeypatch.setattr(showing.time, "monotonic", lambda: now_s)
+    shown = showing.Showing(write)
     for _ in range(60):
         now_s += 0.5
-        showing()
+        shown()
     assert written_at == [0.0, 6.0, 27.0]  # 5 s after the first, then 20 times the second it took
