@@ -59,6 +59,13 @@ def _fastest(points: Points, found: Sequence[Contest]) -> str:
     equal = sum(each.certainty == EQUAL for each in found)
     parts = [f"{words.policy(title)} at {len(won)}{_of_these(won)}" for title, won in ranked]
     parts += [f"at {equal} the two fastest are equal"] if equal else []
+    if len(found) == 1:
+        who = (
+            f"{words.policy(ranked[0][0])}{_of_these(found)}"
+            if ranked
+            else "not one: two are equal"
+        )
+        return f"The fastest dataflow is {who}."
     axes = ", ".join(words.SHORT.get(name, name) for name in points.axes)
     places = f"{counted(len(found), 'place')}{f' ({axes})' if axes else ''}"
     return f"Of {places} the fastest dataflow is {'; '.join(parts)}."
@@ -114,11 +121,12 @@ def _ceiling(points: Points, found: Sequence[Contest]) -> Iterator[str]:
     ceilings = [each.ceiling for each in found if each.ceiling is not None]
     if ceilings:
         beaten = sum(each < 1 for each in ceilings)
-        yield (
-            f"With everything in every memory (replicated, no dataflow) the picture takes "
-            f"{span(1 / each for each in ceilings)} times as long as with the fastest dataflow; "
-            f"at {beaten or 'none'} of {counted(len(ceilings), 'place')} a dataflow beats it."
+        text = (
+            "With everything in every memory (replicated, no dataflow) the picture takes "
+            f"{span(1 / each for each in ceilings)} times as long as with the fastest dataflow"
         )
+        several = f"; at {beaten or 'none'} of {len(ceilings)} places a dataflow beats it"
+        yield f"{text}{several if len(ceilings) > 1 else ''}."
 
 
 def _failed(points: Points) -> Iterator[str]:
@@ -148,7 +156,7 @@ def _wins_of(points: Points, of: str, found: Sequence[Contest], along: str) -> I
         yield Win(
             of,
             winner,
-            _runs([_at(points, found, place, along) for place in places], places),
+            _where(points, found, places, along),
             len(places),
             span(points.profits[each.best]["time_profit"] for each in won),
             _lead(points, won),
@@ -162,12 +170,12 @@ def _winner(points: Points, contest: Contest) -> str:
     return " = ".join(sorted(titles))
 
 
-def _at(points: Points, found: Sequence[Contest], place: int, along: str) -> str:
-    return "" if along == "policy" else words.value(along, points.profits[found[place].best][along])
-
-
-def _runs(values: Sequence[str], places: Sequence[int]) -> str:
-    """``"1.56 % to 40 %, 60 %"``: neighbours are joined."""
+def _where(points: Points, found: Sequence[Contest], places: Sequence[int], along: str) -> str:
+    """``"1.56 % to 40 %, 60 %"``: neighbours are joined, where they are numbers."""
+    cells = [points.profits[found[place].best][along] for place in places]
+    values = [words.value(along, cell) for cell in cells] if along != "policy" else [""]
+    if not all(map(words.is_number, points.axes.get(along, [""]))):
+        return ", ".join(values)
     runs = groupby(zip(values, places, range(len(places)), strict=True), lambda x: x[1] - x[2])
     ends = [[value for value, _, _ in run] for _, run in runs]
     return ", ".join(run[0] if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in ends)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -82,7 +82,6 @@ def _curves(panel: Panel) -> Drawn:
             traces.append(_guide(curve))
             continue
         style = style_of(panel, curve)
-        traces += [_band(curve, style)] if panel.has_bands else []
         traces.append(_line(curve, style, panel))
     layout = _layout(panel.x, _limited(panel))
     layout["shapes"] = [_stated(each) for each in panel.stated]
@@ -108,42 +107,30 @@ def _guide(curve: Curve) -> Drawn:
     return _trace(curve) | {"x": xs, "y": ys, "mode": "lines", "line": line, "hoverinfo": "skip"}
 
 
-def _band(curve: Curve, style: int) -> Drawn:
-    xs = sorted(curve.points)
-    highs, lows = [curve.points[x].high for x in xs], [curve.points[x].low for x in xs]
-    return _trace(curve) | {
-        "x": [*xs, *reversed(xs)],
-        "y": [*highs, *reversed(lows)],
-        "fill": "toself",
-        "fillcolor": f"var(--b{style})",
-        "line": {"width": 0},
-        "mode": "lines",
-        "hoverinfo": "skip",
-    }
-
-
 def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
+    """A curve; the page adds its band, and what is said of a point, from low and high."""
     xs = sorted(curve.points)
-    colour = f"var(--c{style})"
-    line: Drawn = {"color": colour, "width": 2, "dash": DASHES[style]}
+    spreads = [curve.points[x] for x in xs]
+    line: Drawn = {"color": f"var(--c{style})", "width": 2, "dash": DASHES[style]}
     if curve.is_before:
         line = {"color": f"var(--b{style})", "width": 8}
     mode = "markers" if panel.x.names else "lines" if curve.is_before else "lines+markers"
-    ends = _ends(curve, xs) if panel.x.names else {}
-    return (
-        _trace(curve)
-        | ends
-        | {
-            "x": xs,
-            "y": [curve.points[x].mean for x in xs],
-            "customdata": [curve.rows.get(x) for x in xs],
-            "text": [_hover(curve, x, panel.x) for x in xs],
-            "hovertemplate": "%{text}<extra></extra>",
-            "mode": mode,
-            "line": line,
-            "marker": _markers(curve, xs, style),
-        }
-    )
+    ends = {"low": _short(s.low for s in spreads), "high": _short(s.high for s in spreads)}
+    return _trace(curve) | {
+        "x": xs,
+        "y": _short(spread.mean for spread in spreads),
+        "customdata": [curve.rows.get(x) for x in xs],
+        "meta": ends | ({"band": f"var(--b{style})"} if panel.has_bands else {}),
+        "mode": mode,
+        "line": line,
+        "marker": _markers(curve, xs, style),
+        **(_ends(spreads) if panel.x.names else {}),
+    }
+
+
+def _short(values: Iterable[float]) -> list[float]:
+    """Without digits that no picture shows."""
+    return [float(f"{value:.7g}") for value in values]
 
 
 def _markers(curve: Curve, xs: list[float], style: int) -> Drawn:
@@ -157,28 +144,16 @@ def _markers(curve: Curve, xs: list[float], style: int) -> Drawn:
     return marker
 
 
-def _ends(curve: Curve, xs: list[float]) -> Drawn:
+def _ends(spreads: Sequence[Spread]) -> Drawn:
     """Bars from low to high, where no band can be drawn."""
-    up = [curve.points[x].high - curve.points[x].mean for x in xs]
-    down = [curve.points[x].mean - curve.points[x].low for x in xs]
+    up = _short(spread.high - spread.mean for spread in spreads)
+    down = _short(spread.mean - spread.low for spread in spreads)
     bars = {"type": "data", "symmetric": False, "array": up, "arrayminus": down, "thickness": 1.2}
     return {"error_y": bars | {"visible": True}}
 
 
 def _trace(curve: Curve) -> Drawn:
     return {"type": "scatter", "name": html.escape(curve.label), "legendgroup": curve.label}
-
-
-def _hover(curve: Curve, x: float, scale: Scale) -> str:
-    """What is said of a point, in the HTML that plotly reads."""
-    spread = curve.points[x]
-    at = scale.names[int(x)] if scale.names else f"{x:g}"
-    said = f"<b>{html.escape(curve.label)}</b><br>at {html.escape(at)}: {spread.mean:.4g}"
-    return f"{said} ({spread.low:.4g} to {spread.high:.4g})" if _is_wide(spread) else said
-
-
-def _is_wide(spread: Spread) -> bool:
-    return f"{spread.low:.4g}" != f"{spread.high:.4g}"
 
 
 def _stated(stated: Stated) -> Drawn:
@@ -229,14 +204,8 @@ def _bars(bars: Bars) -> Drawn:
             "name": part,
             "legendgroup": part,
             "x": places,
-            "y": heights,
+            "y": _short(heights),
             "customdata": bars.rows,
-            "text": [
-                f"<b>{part}</b><br>at {at}: {height:,.4g}"
-                for at, height in zip(names, heights, strict=True)
-            ],
-            "hovertemplate": "%{text}<extra></extra>",
-            "textposition": "none",
             "marker": {"color": f"var(--p{PARTS[part]})", "line": {"width": 0}},
         }
         for part, heights in bars.parts.items()

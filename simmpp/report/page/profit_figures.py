@@ -12,8 +12,9 @@ from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange
 from simmpp.report.page.figure import Figure, slug, styles_of
 from simmpp.sweeps.tables import Row
 
-MOST_ABSCISSAS, ENOUGH = 2, 3
-"""A measure is shown along so many axes; the second has at least so many values."""
+MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
+"""A measure is shown along so many axes; the second has at least so many values, and at most so
+many plates to choose from."""
 MARGIN, LOG_MARGIN = 1.06, 1.2
 """Room beyond the largest value, and beyond both ends of a logarithmic axis."""
 TITLES = {
@@ -44,7 +45,8 @@ class Shown:
 def profit_figures(shown: Shown) -> Iterator[Figure]:
     """Both profits along the best axes; speed-up and efficiency along the number of PEs."""
     best, *others = abscissas(shown.axes)
-    along = [best, *(name for name in others if len(shown.axes[name]) >= ENOUGH)][:MOST_ABSCISSAS]
+    long = (name for name in others if len(shown.axes[name]) >= ENOUGH and _is_short(shown, name))
+    along = [best, *long][:MOST_ABSCISSAS]
     for measure in PROFITS:
         title, _ = TITLES[measure]
         for name in along:
@@ -53,7 +55,14 @@ def profit_figures(shown: Shown) -> Iterator[Figure]:
             yield _figure(shown, measure, name, over, f"-over-{slug(name)}" if several else "")
     if "processors" in shown.axes:
         for measure in OF_MACHINE:
-            yield _figure(shown, measure, "processors", TITLES[measure][0])
+            name = "processors" if _is_short(shown, "processors") else best
+            yield _figure(shown, measure, name, TITLES[measure][0])
+
+
+def _is_short(shown: Shown, along: str) -> bool:
+    """Whether a figure along an axis has few plates."""
+    rows = shown.rows
+    return len(plates(rows, arrange(rows, shown.axes, along))) <= MOST_PLATES
 
 
 def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = "") -> Figure:
@@ -63,17 +72,19 @@ def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = ""
         plate: _panels(shown, panels, measure, arrangement)
         for plate, panels in plates(rows, arrangement).items()
     }
-    note = f"{TITLES[measure][1]}; {spread_note(rows, has_bands=not shown.before)}"
+    numeric = all(map(words.is_number, arrangement.values))
+    spread = "" if shown.before else f", {'bands' if numeric else 'bars'} are 95 % intervals"
+    note = f"{TITLES[measure][1]}; {spread_note(rows, spread)}"
     return Figure(measure.replace("_", "-") + suffix, title, note, found)
 
 
-def spread_note(profits: Sequence[Row], *, has_bands: bool) -> str:
+def spread_note(profits: Sequence[Row], spread: str) -> str:
     """What lines and bands are."""
     least, most = (f(row["n"] for row in profits) for f in (min, max))
     if most < 2:
         return "one seed, so nothing is known of its spread"
     seeds = f"{most} seeds" if least == most else f"{least} to {most} seeds"
-    return f"means of {seeds}" + (", bands are 95 % intervals" if has_bands else "")
+    return f"means of {seeds}{spread}"
 
 
 def _panels(

@@ -67,7 +67,7 @@
     const traces = Object.entries(parts).map(([part, values]) => ({
       type: "bar", orientation: "h", name: part, legendgroup: part, x: values, y: numbers.map((_, place) => place), customdata: numbers,
       text: values.map((value, place) => `<b>${part}</b><br>${escaped[place]}: ${short(value)}`),
-      hovertemplate: "%{text}<extra></extra>", textposition: "none", marker: { color: `var(--p${depth.colours[part]})`, line: { width: 0 } },
+      marker: { color: `var(--p${depth.colours[part]})`, line: { width: 0 } },
     }));
     const layout = { barmode: "stack", bargap: 0.3, showlegend: false, hovermode: "closest", margin: { l: 10 },
       xaxis: { rangemode: "tozero", automargin: true }, yaxis: { tickvals: numbers.map((_, place) => place), ticktext: escaped, autorange: "reversed", automargin: true } };

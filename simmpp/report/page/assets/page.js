@@ -64,9 +64,27 @@
         font: { size: 13, color: style.getPropertyValue("--ink").trim() }, align: "left" },
     };
   };
+  // Bands, and what is said of a point, are worked out here: as data they would be most of the page.
+  const short = (value) => String(Number(value.toPrecision(4)));
+  const texts = ({ name, x, y, meta }, { xaxis }) => x.map((at, n) => {
+    const place = xaxis.ticktext && xaxis.tickvals.includes(at) ? xaxis.ticktext[xaxis.tickvals.indexOf(at)] : short(at);
+    const [low, high] = meta ? [short(meta.low[n]), short(meta.high[n])] : [];
+    return `<b>${name}</b><br>at ${place}: ${short(y[n])}${low !== high ? ` (${low} to ${high})` : ""}`;
+  });
+  const band = ({ name, legendgroup, x, meta }) => ({
+    type: "scatter", name, legendgroup, mode: "lines", line: { width: 0 }, hoverinfo: "skip", fill: "toself", fillcolor: meta.band,
+    x: [...x, ...[...x].reverse()], y: [...meta.high, ...[...meta.low].reverse()],
+  });
+  const completed = (trace, layout) => {
+    if (trace.hoverinfo === "skip") return [trace];
+    const told = { text: trace.text ?? texts(trace, layout), hovertemplate: "%{text}<extra></extra>", textposition: "none" };
+    if (trace.type === "scatter") delete told.textposition;
+    return [...(trace.meta?.band ? [band(trace)] : []), { ...trace, ...told }];
+  };
   const draw = (element) => {
     const figure = charts.get(element), style = getComputedStyle(document.documentElement);
-    const traces = figure.data.map((trace) => ({ ...painted(trace, style), visible: !figure.hidden?.has(trace.legendgroup) }));
+    const traces = figure.data.flatMap((trace) => completed(trace, figure.layout))
+      .map((trace) => ({ ...painted(trace, style), visible: !figure.hidden?.has(trace.legendgroup) }));
     return Plotly.react(element, traces, dressed(painted(figure.layout, style), style), config);
   };
   const show = (element, figure) => {
@@ -93,9 +111,7 @@
   // A legend for all panels of a figure: its buttons hide and show curves.
   const legend = (place, figures, title) => {
     const traces = new Map();
-    for (const figure of figures) for (const trace of figure.data) {
-      if (trace.fill !== "toself") traces.set(trace.legendgroup ?? trace.name, trace);
-    }
+    for (const figure of figures) for (const trace of figure.data) traces.set(trace.legendgroup, trace);
     const hidden = new Set();
     const buttons = [...traces].map(([name, trace]) => {
       const button = made("button", { type: "button", "aria-pressed": "true" }, drawnMark(trace), name);
