@@ -156,4 +156,5 @@ def _curve(
     certain = {node.share: log for node, log in zip(nodes, logs, strict=True) if not node.drawn}
     for share_of_it, log in (certain | {1.0: 0.0}).items():
         mean[shares == share_of_it], error[shares == share_of_it] = log, 0.0
-    return np.exp(mean), np.where(error > 0, np.exp(mean) * error, 0.0)
+    profit, deviation = np.exp(mean), np.zeros(len(shares))
+    return profit, np.multiply(profit, error, out=deviation, where=error > 0)
