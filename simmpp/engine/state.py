@@ -112,6 +112,7 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
+    record_hops: bool = False,
     log: Sink | None = None,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
@@ -120,9 +121,11 @@ def new_state(
     arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays["ray_hops"] = np.zeros(workload.n_rays if record_hops else 0, np.int32)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": record_tests,
+        "record_hops": record_hops,
         "logs": log is not None,
     }
     state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
@@ -250,5 +253,6 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pe.load = pe.n_ready
         pe.settled_load = pe.n_ready
         pe.peak_rays = pe.n_ready
+        pe.peak_object_bytes = pe.held_bytes
         pe.peak_bytes = pe.held_bytes + pe.n_ready * s.ray_bytes
     s.rays_left = pixel_pes.size
