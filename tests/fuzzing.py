@@ -63,13 +63,11 @@ class Hang(Exception):
 @cache
 def compiled() -> None:
     """Compile what commands run, once, so that no example has to wait for it."""
-    from simmpp.commands.run import run
-    from simmpp.sweeps.config import load_config
-
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "c.yaml"
+        file, picture = Path(folder) / "c.yaml", Path(folder) / "p.png"
         file.write_text("scene: tetra:1\npicture: {resolution: 3}\nprocessors: 4")
-        run(load_config(file), out=None, picture=file.with_suffix(".png"), verify=True)
+        done = CliRunner().invoke(main, ["run", str(file), "--picture", str(picture), "--verify"])
+        assert done.exit_code == 0, done.output
 
 
 @contextmanager
