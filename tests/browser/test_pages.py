@@ -15,7 +15,7 @@ from simmpp.report.page.difference import difference_of
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
-from simmpp.sweeps.rows import NUMBERS
+from simmpp.sweeps.columns import NUMBERS
 from simmpp.sweeps.tables import Row
 
 pytestmark = pytest.mark.browser
