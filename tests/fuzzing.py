@@ -6,6 +6,7 @@ import faulthandler
 import os
 import signal
 import tempfile
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
@@ -38,8 +39,12 @@ def examples(few: int) -> settings:
 def answered(*arguments: str) -> Result:
     """A command's result, once it is found to be an answer or a refusal in one line."""
     compiled()
-    with alarm():
+    with alarm(), warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("ignore")
+        for kind in (RuntimeWarning, UserWarning):  # what Python shows to everybody
+            warnings.simplefilter("always", kind)
         done = CliRunner().invoke(main, arguments)
+    assert not seen, [str(warning) for warning in seen]
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
     assert done.exit_code in (0, 2), done.output
@@ -116,7 +121,7 @@ def changed_words(data: st.DataObject, words: Sequence[str], others: st.SearchSt
 def written(node: Any) -> str:
     """A tree of mappings (lists of pairs, so that keys may repeat), lists and raw words as YAML."""
     if isinstance(node, tuple):
-        return "{" + ", ".join(f"{key}: {written(value)}" for key, value in node) + "}"
+        return "{" + ", ".join(f"{written(key)}: {written(value)}" for key, value in node) + "}"
     if isinstance(node, list):
         return "[" + ", ".join(map(written, node)) + "]"
     return str(node)
@@ -140,7 +145,7 @@ def mutated(data: st.DataObject, node: Any, words: st.SearchStrategy[Any]) -> An
                             [(key, [value])],
                             [(key, ((key, value),))],
                             [(data.draw(words), value)],
-                            [(key + "x", value)],
+                            [(written(key) + "x", value)],
                             [(key, value), (data.draw(words), data.draw(words))],
                         ]
                     )

@@ -30,10 +30,12 @@ VARIANTS = (
 
 
 def percent(count: int, published: int | None) -> str:
+    """How much a count exceeds the published one."""
     return "" if not published else f"{100 * (count / published - 1):+.2f}"
 
 
 def rows(name: str, variant: str, counts: tuple[int, ...]) -> list[dict[str, object]]:
+    """A row per quantity of one scene."""
     table = []
     for column, quantity in enumerate(QUANTITIES):
         haines = HAINES[name][column] if name in HAINES else None
@@ -54,6 +56,7 @@ def rows(name: str, variant: str, counts: tuple[int, ...]) -> list[dict[str, obj
 
 
 def main() -> None:
+    """Print the counts and write the table."""
     table: list[dict[str, object]] = []
     for name in HAVRAN:
         for variant, least, depth in VARIANTS:

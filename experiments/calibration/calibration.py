@@ -116,7 +116,7 @@ def write(rows: list[Row], name: str) -> None:
 
 
 def main() -> None:
-    """Simulate, judge, write and draw; after every choice, so that it can be stopped."""
+    """Simulate, judge and write, choice by choice, so that it can be stopped; then draw."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/calibration")
     folder.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
@@ -131,7 +131,7 @@ def main() -> None:
             print(f"{choice.name}: {rows[-1]['n_holds']} of {len(judged)} hold", flush=True)
             write([published(), *rows], "calibration.csv")
             write(details, "details.csv")
-            draw([published(), *rows], CLAIMS, HERE / "calibration")
+    draw([published(), *rows], CLAIMS, HERE / "calibration")
 
 
 if __name__ == "__main__":

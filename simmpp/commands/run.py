@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import sys
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import click
 
 from simmpp.commands.options import NamedPath, window_of
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
     from rich.progress import TaskID
 
-    from simmpp.report.timeline.recorder import TimelineRecorder
+    from simmpp.engine.log import Sink
+    from simmpp.policy.parameters import PolicyParameters
     from simmpp.sweeps.config import Config
     from simmpp.sweeps.point import Point, PolicyRun
 
@@ -46,6 +50,12 @@ VERIFY_FAILED = 1
     help="The part of the run that --timeline writes, such as '0 ms:5 ms'; all of it by default.",
 )
 @click.option(
+    "--figures",
+    type=NamedPath(),
+    metavar="DIR",
+    help="Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
+)
+@click.option(
     "--verify",
     is_flag=True,
     help="Make the picture again from the tests that the simulated PEs did, and compare.",
@@ -58,6 +68,7 @@ def run_command(
     picture: Path | None,
     timeline: Path | None,
     window: str | None,
+    figures: Path | None,
     verify: bool,
 ) -> None:
     """Compare dataflow policies on one scene and one machine.
@@ -76,13 +87,14 @@ def run_command(
     folder(out, "--out")
     window_ps = None if window is None else window_of(window, "--timeline-window")
     _check_timeline(timeline, window_ps)
+    folder(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(
             "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
             "are for simmpp sweep"
         )
-    looks = Looks(picture, timeline, window_ps)
+    looks = Looks(picture, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -92,6 +104,7 @@ class Looks(NamedTuple):
     picture: Path | None
     timeline: Path | None
     window_ps: tuple[int, int] | None
+    figures: Path | None
 
 
 def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None:
@@ -109,8 +122,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         _write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
     try:
-        with _recorder(point, looks) as recorder:
-            _simulate(point, runs, recorder, record_tests=verify)
+        with _recorders(point, looks) as recorders:
+            _simulate(point, runs, recorders, record_tests=verify)
     finally:
         if out and runs:
             _write(point, runs, out)
@@ -132,14 +145,37 @@ def _check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
     writable(path, "--timeline")
 
 
-def _recorder(point: Point, looks: Looks) -> AbstractContextManager[TimelineRecorder | None]:
-    from simmpp.report.timeline.recorder import TimelineRecorder
+class Recorder(Protocol):
+    """Watches the runs of a point, one after the other."""
+
+    needs_hops: bool
+    """Whether links are to be counted for each ray."""
+
+    def begin(self, policy: PolicyParameters) -> Sink:
+        """What gets the event log of a policy's run."""
+
+    def end(self, run: PolicyRun) -> None:
+        """The run that was begun last is over."""
+
+
+@contextmanager
+def _recorders(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
     from simmpp.report.timeline.slices import Window
 
-    if looks.timeline is None:
-        return nullcontext()
-    window = Window(*looks.window_ps) if looks.window_ps else None
-    return TimelineRecorder(looks.timeline, point.machine, window)
+    with ExitStack() as stack:
+        recorders: list[Recorder] = []
+        if looks.timeline is not None:
+            from simmpp.report.timeline.recorder import TimelineRecorder
+
+            window = Window(*looks.window_ps) if looks.window_ps else None
+            timeline = TimelineRecorder(looks.timeline, point.machine, window)
+            stack.callback(timeline.close)
+            recorders.append(timeline)
+        if looks.figures is not None:
+            from simmpp.report.motion.recorder import FiguresRecorder
+
+            recorders.append(FiguresRecorder(looks.figures, point))
+        yield recorders
 
 
 def _require_scene(config: Config, option: str) -> None:
@@ -151,7 +187,7 @@ def _require_scene(config: Config, option: str) -> None:
 
 
 def _simulate(
-    point: Point, runs: list[PolicyRun], recorder: TimelineRecorder | None, *, record_tests: bool
+    point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
@@ -166,12 +202,26 @@ def _simulate(
                 tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
             bars.update(tasks[title], completed=n_rays - rays_left)
 
-        log_of = None if recorder is None else recorder.begin
-        each = run_point(point, record_tests=record_tests, log_of=log_of, progress=progress)
+        def log_of(parameters: PolicyParameters) -> Sink:
+            sinks = [recorder.begin(parameters) for recorder in recorders]
+
+            def hand_on(rows: NDArray[np.void]) -> None:
+                for sink in sinks:
+                    sink(rows)
+
+            return hand_on
+
+        each = run_point(
+            point,
+            record_tests=record_tests,
+            record_hops=any(recorder.needs_hops for recorder in recorders),
+            log_of=log_of if recorders else None,
+            progress=progress,
+        )
         for run in each:
             runs.append(run)
-            if recorder:
-                recorder.end(run.result.makespan_ps)
+            for recorder in recorders:
+                recorder.end(run)
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:

@@ -83,6 +83,7 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
         next_ps = receive(s, me, message, now_ps)
     else:
         next_ps = compute(s, me, now_ps)
+    pe.peak_object_bytes = max(pe.peak_object_bytes, pe.held_bytes)
     pe.peak_bytes = max(pe.peak_bytes, pe.held_bytes + pe.load * s.ray_bytes)
     return next_ps
 

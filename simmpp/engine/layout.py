@@ -32,6 +32,7 @@ PE = np.dtype(
         ("held_bytes", "i8"),  # resident and fetched objects
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
+        ("peak_object_bytes", "i8"),  # of held_bytes
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
     ],
@@ -161,6 +162,7 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "tested_rays": I4,
     "tested_objects": I4,
     "free_ps": I8,  # from when on each link and port is free; empty without contention
+    "ray_hops": I4,
     "log": EVENT,
 }
 """Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
@@ -200,6 +202,7 @@ PARAMETERS = (
     "refresh_ps",  # NONE: no refresh
     "merge_requests",
     "record_tests",
+    "record_hops",
     "logs",
 )
 COUNTERS = (

@@ -42,12 +42,14 @@ def simulate(
     ready_order: str = "depth-first",
     log: bool | Sink = False,
     record_tests: bool = False,
+    record_hops: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Replay a workload on a simulated machine.
 
     ``log`` keeps the event log in the result; a function gets its rows, (n,) EVENT, as they become
-    final, and nothing is kept. ``record_tests`` keeps the (ray, object) pairs that PEs tested.
+    final, and nothing is kept. ``record_tests`` keeps the (ray, object) pairs that PEs tested,
+    ``record_hops`` the links that were crossed for each ray.
     ``progress`` is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
@@ -63,6 +65,7 @@ def simulate(
         policy,
         ready_order=ready_order,
         record_tests=record_tests,
+        record_hops=record_hops,
         log=sink,
     )
     run = ENGINES[engine](state, progress)
@@ -124,9 +127,13 @@ def _conclude(
         waiting_ps=waiting_ps,
         peak_rays=int(state.pes["peak_rays"].max()),
         peak_bytes=int(state.pes["peak_bytes"].max()),
+        pe_peak_rays=state.pes["peak_rays"].copy(),
+        pe_peak_bytes=state.pes["peak_bytes"].copy(),
+        pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
         log=log,
+        ray_hops=state.arrays["ray_hops"] if state["record_hops"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

@@ -21,7 +21,7 @@ from simmpp.engine.layout import (
     Run,
 )
 from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
-from simmpp.engine.memory import pes, rays
+from simmpp.engine.memory import itinerary_offsets, pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
 from simmpp.machine.links import LINKS, ROWS_PER_PE
@@ -112,6 +112,7 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
+    record_hops: bool = False,
     log: Sink | None = None,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
@@ -120,9 +121,11 @@ def new_state(
     arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays["ray_hops"] = np.zeros(workload.n_rays if record_hops else 0, np.int32)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": record_tests,
+        "record_hops": record_hops,
         "logs": log is not None,
     }
     state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
@@ -186,7 +189,6 @@ def _own_arrays(
         "log": 2 * LOG_ROWS + most_sent if logs else 0,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
     marks = ("wants_marks", "partners_marks", "messages_marks")
     return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
 
@@ -239,7 +241,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pes(s)[me].ready_last = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
-        rays(s)[ray].next = NONE
+        rays(s)[ray].at, rays(s)[ray].next = itinerary_offsets(s)[ray], NONE
         if pe.ready_first == NONE:
             pe.ready_first = ray
         else:
@@ -251,5 +253,6 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pe.load = pe.n_ready
         pe.settled_load = pe.n_ready
         pe.peak_rays = pe.n_ready
+        pe.peak_object_bytes = pe.held_bytes
         pe.peak_bytes = pe.held_bytes + pe.n_ready * s.ray_bytes
     s.rays_left = pixel_pes.size

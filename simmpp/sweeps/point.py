@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypedDict
 
 from simmpp.engine.log import Sink
 from simmpp.engine.result import Result
@@ -88,10 +89,19 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
 
 
+class Records(TypedDict):
+    """What a run notes besides its counters."""
+
+    log: bool | Sink
+    record_tests: bool
+    record_hops: bool
+
+
 def run_point(
     point: Point,
     *,
     record_tests: bool = False,
+    record_hops: bool = False,
     log_of: Callable[[PolicyParameters], Sink] | None = None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
@@ -101,16 +111,19 @@ def run_point(
     called now and then.
     """
     for parameters, named in policies_of(point.config):
-        log = False if log_of is None else log_of(parameters)
-        yield _run(point, parameters, named, record_tests, log, progress)
+        records: Records = {
+            "log": False if log_of is None else log_of(parameters),
+            "record_tests": record_tests,
+            "record_hops": record_hops,
+        }
+        yield _run(point, parameters, named, records, progress)
 
 
 def _run(
     point: Point,
     parameters: PolicyParameters,
     named: bool,
-    record_tests: bool,
-    log: bool | Sink,
+    records: Records,
     progress: Callable[[str, int], None] | None,
 ) -> PolicyRun:
     def report(rays_left: int) -> None:
@@ -126,9 +139,8 @@ def _run(
         parameters,
         engine=settings.engine,
         ready_order=settings.ready_order,
-        log=log,
-        record_tests=record_tests,
         progress=report,
+        **records,
     )
     return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 

@@ -326,3 +326,15 @@ def test_run_writes_a_timeline_of_every_policy() -> None:
     cut = json.loads(gzip.decompress(Path("w.json.gz").read_bytes()))["traceEvents"]
     assert max(event.get("ts", 0) for event in cut) <= 10
     assert max(event.get("ts", 0) for event in events) > 10
+
+
+def test_run_draws_figures_of_every_policy() -> None:
+    command = ("run", "c.yaml", "--set", "policy={name: ray, label: 'by r/y'}", "--figures", "f")
+    assert simmpp(*command, "--timeline", "t.parquet").exit_code == 0
+    names = ("activity", "memory", "pixels", "progress", "torus", "traffic")
+    for policy in ("object", "by-r-y", "replicated"):
+        for name in names:
+            assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
+            assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
+    assert len(list(Path("f").iterdir())) == 3 * 2 * len(names)
+    assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")

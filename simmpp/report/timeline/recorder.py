@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import Protocol
 
 from simmpp.engine.log import Sink
 from simmpp.machine.machine import Machine
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.timeline.slices import Part, Rows, Timeline, Window
+from simmpp.sweeps.point import PolicyRun
 
 SUFFIXES = (".json", ".json.gz", ".parquet")
 
@@ -30,6 +30,8 @@ class TimelineFile(Protocol):
 class TimelineRecorder:
     """One file; its format follows from its name, one of SUFFIXES."""
 
+    needs_hops = False
+
     def __init__(self, path: Path, machine: Machine, window: Window | None = None) -> None:
         self._file = _file(path)
         self._machine = machine
@@ -47,20 +49,13 @@ class TimelineRecorder:
 
         return write
 
-    def end(self, makespan_ps: int) -> None:
+    def end(self, run: PolicyRun) -> None:
         """The run that was begun last is over."""
         if self._timeline is not None:
-            self._file.add(self._timeline.end(makespan_ps))
+            self._file.add(self._timeline.end(run.result.makespan_ps))
 
-    def __enter__(self) -> TimelineRecorder:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the file; what was simulated until now can be read."""
         self._file.close()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import json
 from decimal import Decimal
@@ -20,6 +21,7 @@ from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.timeline.recorder import TimelineRecorder
 from simmpp.report.timeline.slices import Window
+from simmpp.sweeps.point import PolicyRun
 
 BYTE_PER_PS = 10**12
 MACHINE = Machine(
@@ -48,7 +50,8 @@ CASE = Case(WORKLOAD, MACHINE, placement_of((0, 1), [0], 2), PolicyParameters("o
 
 def record(path: Path, case: Case, engine: str = "compiled", window: Window | None = None) -> int:
     """The case's timeline in a file; returns the makespan."""
-    with TimelineRecorder(path, case.machine, window) as recorder:
+    recorder = TimelineRecorder(path, case.machine, window)
+    with contextlib.closing(recorder):
         result = simulate(
             case.workload,
             case.machine,
@@ -58,7 +61,7 @@ def record(path: Path, case: Case, engine: str = "compiled", window: Window | No
             ready_order=case.ready_order,
             log=recorder.begin(case.policy),
         )
-        recorder.end(result.makespan_ps)
+        recorder.end(PolicyRun(case.policy, result, named=True, wall_s=0.0))
     return result.makespan_ps
 
 
