@@ -7,7 +7,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from simmpp.sweeps.rows import NUMBERS, in_order, result_columns
+from simmpp.sweeps.columns import NUMBERS, result_columns
+from simmpp.sweeps.rows import in_order
 from simmpp.sweeps.sweep import RESULTS
 from simmpp.sweeps.tables import Row, write_csv
 

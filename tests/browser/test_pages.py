@@ -15,7 +15,7 @@ from simmpp.report.page.difference import difference_of
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
-from simmpp.sweeps.rows import NUMBERS
+from simmpp.sweeps.columns import NUMBERS
 from simmpp.sweeps.tables import Row
 
 pytestmark = pytest.mark.browser
@@ -238,7 +238,7 @@ def test_the_page_of_a_running_sweep_reloads_itself(
     write(len(rows), is_running=False)
     page.locator(".live").wait_for(state="detached")
     title = "mountain:4, 8 PEs, x = 10 %: replicated scene"
-    assert page.locator("#point-title").inner_text() == title
+    page.locator("#point-title", has_text=title).wait_for()
     asked = len(found.asked)
     page.wait_for_timeout(6000)  # longer than a running page waits
     assert len(found.asked) == asked

@@ -49,7 +49,7 @@ def _figure(
     label = words.abscissa(along, list(arrangement.values))[0].label
     found: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
-        shown = {panel: [n for n, _ in panels[panel] if points.runs[n]] for panel in panels}
+        shown = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
         most = max((sum(heights(n).values()) for ns in shown.values() for n in ns), default=1)
         for panel in sorted(panels, key=_colour_order(points)):
             names = tuple(words.label(along, points.profits[n][along]) for n in shown[panel])

@@ -14,7 +14,6 @@ from simmpp.report.figures import FIGURES
 from simmpp.report.page.profit_figures import TITLES
 
 TOPICS = {
-    "bench": "Run time against error",
     "sensitivity": "Sensitivity",
 }
 """Stems of files, as a whole or to the first hyphen, and what they are about."""

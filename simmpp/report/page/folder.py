@@ -11,16 +11,20 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.errors import ConfigError
+from simmpp.report.bench import BENCH
 from simmpp.report.reproduce import CLAIMS, EXPERIMENTS
+from simmpp.report.rungs import bench_columns
 from simmpp.report.verdict import COLUMNS as CLAIM_COLUMNS
-from simmpp.sweeps.columns import COLUMNS, KEYS, NUMBERS
+from simmpp.sweeps.columns import COLUMNS, KEYS, METHOD, NUMBERS
+from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.rows import in_order
-from simmpp.sweeps.sweep import RECORD, RESULTS, TIMINGS
+from simmpp.sweeps.sweep import PROFITS, RECORD, RESULTS, TIMINGS
 from simmpp.sweeps.tables import Row, read_csv
 
 INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS}, {"fraction", "effective_fraction"}
 MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS}
-"""A memory given in bytes has no fraction; a failed point has no results."""
+"""A memory given in bytes has no fraction, a failed point no results, and a method does not know
+all of them."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +34,15 @@ class Folder:
     path: Path
     rows: list[Row]
     further: tuple[str, ...] = ()
-    """Columns of keys beyond those that all rows have."""
+    """Columns of keys beyond those that all rows have, and the method where it changes."""
     experiments: Mapping[str, list[Row]] = field(default_factory=dict)
     """Rows of the paper's experiments by name; ``rows`` has all of them, each once."""
     claims: Sequence[Mapping[str, str]] = ()
     timings: Sequence[Mapping[str, str]] = ()
+    profits: Sequence[Row] = ()
+    """Those of ``profits.csv``: their intervals know how the number of seeds was chosen."""
+    bench: Sequence[Row] = ()
+    """Those of ``bench.csv``."""
     record: Mapping[str, Any] = field(default_factory=dict)
     """``run.json``."""
 
@@ -65,17 +73,19 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
     claims = _table(path / CLAIMS, CLAIM_COLUMNS)
     timings = _table(path / TIMINGS, ("policy", "trace_s", "wall_s"))
     record = _record(path / RECORD)
+    bench = _numbers(path / BENCH, bench_columns(()))
     if (path / RESULTS).is_file():
         rows, further = read_rows(path / RESULTS)
-        return Folder(path, rows, further, {}, claims, timings, record)
+        profits = _numbers(path / PROFITS, profit_columns())
+        return Folder(path, rows, further, {}, claims, timings, profits, bench, record)
     found = {each: path / f"{each}.csv" for each in EXPERIMENTS if (path / f"{each}.csv").is_file()}
-    if not found:
+    if not found and not bench:
         raise ConfigError(
-            f"{name}: value {str(path)!r}: there are no rows: expected {RESULTS} (of run or sweep) "
-            f"or {EXPERIMENTS[0]}.csv (of reproduce)"
+            f"{name}: value {str(path)!r}: there are no rows: expected {RESULTS} (of run or "
+            f"sweep), {EXPERIMENTS[0]}.csv (of reproduce) or {BENCH} (of bench)"
         )
     experiments = {each: read_rows(file)[0] for each, file in found.items()}
-    return Folder(path, _once(experiments), (), experiments, claims, timings, record)
+    return Folder(path, _once(experiments), (), experiments, claims, timings, (), bench, record)
 
 
 def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:
@@ -88,6 +98,8 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     """The rows of a ``results.csv`` with numbers as such, and the columns of further keys."""
     texts = _table(path, COLUMNS)
     further = tuple(name for name in (texts[0] if texts else ()) if name not in COLUMNS)
+    if len({row[METHOD] for row in texts}) > 1:
+        further = (*further, METHOD)
     return [_typed(row, path, line) for line, row in enumerate(texts, 2)], further
 
 
@@ -101,6 +113,11 @@ def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
         raise ConfigError(f"damaged: {error}", where=str(path)) from None
 
 
+def _numbers(path: Path, columns: Sequence[str]) -> list[Row]:
+    """A CSV file's rows, with numbers where cells look like some."""
+    return [{name: _number(cell) for name, cell in row.items()} for row in _table(path, columns)]
+
+
 def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:
     """Numbers where numbers belong, and in further keys where they look like some."""
     typed: Row = {}
@@ -112,7 +129,7 @@ def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:
             raise ConfigError(
                 f"column {name}: value {cell!r}: expected {expected}", where=str(path), line=line
             ) from None
-    if not typed["error"] and any(typed[name] == "" for name in NUMBERS):
+    if not typed["error"] and typed["makespan_ps"] == "":
         raise ConfigError("expected results or an error", where=str(path), line=line)
     return typed
 

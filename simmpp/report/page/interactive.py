@@ -72,7 +72,8 @@ def style_of(panel: Panel, curve: Curve) -> int:
     """The number of a curve's colour, marker and dashes."""
     if curve.style is not None:
         return curve.style % COLOURS
-    return [each for each in panel.curves if not each.is_guide].index(curve) % COLOURS
+    labels = list(dict.fromkeys(each.label for each in panel.curves if not each.is_guide))
+    return labels.index(curve.label) % COLOURS
 
 
 def _curves(panel: Panel) -> Drawn:
@@ -125,6 +126,19 @@ def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
         "line": line,
         "marker": _markers(curve, xs, style),
         **(_ends(spreads) if panel.x.names else {}),
+        **(_said(curve, xs) if curve.said else {}),
+    }
+
+
+def _said(curve: Curve, xs: list[float]) -> Drawn:
+    """What is written beside points."""
+    said = [html.escape(curve.said.get(x, "")).replace("\n", "<br>") for x in xs]
+    font = {"size": 11, "color": "var(--muted)"}
+    return {
+        "mode": "lines+markers+text",
+        "text": said,
+        "textposition": "top right",
+        "textfont": font,
     }
 
 
@@ -174,7 +188,7 @@ def _remark(stated: Stated, panel: Panel) -> Drawn:
     return {
         "x": _placed(stated.right, panel.x),
         "y": _placed(stated.high, panel.y),
-        "text": html.escape(stated.label),
+        "text": html.escape(stated.label).replace("\n", "<br>"),
         "showarrow": False,
         "xanchor": "right",
         "yanchor": "bottom",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.report.page import words
+from simmpp.report.page.accuracy import accuracy_figures
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.bar_figures import bar_figures
 from simmpp.report.page.beside import beside
@@ -55,9 +56,10 @@ class Report:
 
 def report_of(folder: Folder) -> Report:
     """Work out what the rows of a folder show."""
-    points = points_of(folder.rows, folder.further)
+    points = points_of(folder.rows, folder.further, folder.profits)
+    accuracy = Group("accuracy", "Run time against error", "", accuracy_figures(folder.bench))
     if not any(points.runs):
-        return Report(folder, points, [])
+        return Report(folder, points, [accuracy] if folder.bench else [])
     clicking = "Click a point to see it in depth; click a name to hide its curve."
     paper = paper_figures(folder, points)
     groups = [
@@ -66,6 +68,7 @@ def report_of(folder: Folder) -> Report:
             "profits", "Profits", clicking, list(profit_figures(Shown(points.profits, points.axes)))
         ),
         Group("accounts", "Time and messages", "", list(bar_figures(points))),
+        accuracy,
     ]
     return Report(folder, points, [group for group in groups if group.figures])
 
@@ -86,7 +89,7 @@ def _values(report: Report, is_running: bool) -> dict[str, Any]:
         "facts": facts(folder),
         "live": _progress(folder) if is_running else "",
         "warning": _warning(folder),
-        "sentences": sentences(points),
+        "sentences": sentences(points) if folder.rows or not folder.bench else [],
         "wins": wins(points),
         "along": {"policy": "", "fraction": "x"}.get(along, along),
         "claims": folder.claims,

@@ -19,12 +19,13 @@
   };
   const TIMES = [["s", 1e12], ["ms", 1e9], ["us", 1e6], ["ns", 1e3], ["ps", 1]];
   const SIZES = [["TB", 1e12], ["GB", 1e9], ["MB", 1e6], ["kB", 1e3], ["B", 1]];
+  const known = (number, column) => rowsOf[number].map((row) => rows[column][row]).filter((cell) => cell !== "").map(Number);
   const mean = (number, column) => {
-    const found = rowsOf[number].map((row) => Number(rows[column][row]));
+    const found = known(number, column);
     return found.length ? found.reduce((sum, each) => sum + each, 0) / found.length : null;
   };
   const range = (number, column, format) => {
-    const found = rowsOf[number].map((row) => Number(rows[column][row]));
+    const found = known(number, column);
     if (!found.length) return "–";
     const low = format(Math.min(...found)), high = format(Math.max(...found));
     return low === high ? low : `${format(mean(number, column))} (${low} to ${high})`;

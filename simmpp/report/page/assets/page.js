@@ -77,8 +77,9 @@
   });
   const completed = (trace, layout) => {
     if (trace.hoverinfo === "skip") return [trace];
-    const told = { text: trace.text ?? texts(trace, layout), hovertemplate: "%{text}<extra></extra>", textposition: "none" };
-    if (trace.type === "scatter") delete told.textposition;
+    const said = trace.type === "bar" && trace.text ? trace.text : texts(trace, layout);
+    const told = { hovertext: said, hovertemplate: "%{hovertext}<extra></extra>" };
+    if (trace.type === "bar") Object.assign(told, { text: null, textposition: "none" });
     return [...(trace.meta?.band ? [band(trace)] : []), { ...trace, ...told }];
   };
   const draw = (element) => {

@@ -10,7 +10,8 @@ from sweep_rows import failed, row, sweep, written
 from simmpp.errors import ConfigError
 from simmpp.report.page.folder import read_folder
 from simmpp.report.reproduce import EXPERIMENTS
-from simmpp.sweeps.rows import in_order, result_columns
+from simmpp.sweeps.columns import result_columns
+from simmpp.sweeps.rows import in_order
 from simmpp.sweeps.tables import write_csv
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
@@ -68,7 +69,7 @@ def test_a_folder_without_rows_is_refused(tmp_path: Path) -> None:
         (",1952,", ",many,", "results.csv:2: column messages: value 'many': expected an integer"),
         (",0.5,", ",nan,", "results.csv:2: column fraction: value 'nan': expected a number"),
         (",7,\n", ",7\n", "results.csv:2 has 25 cells, not 26"),
-        (",1952,", ",,", "results.csv:2: expected results or an error"),
+        (",1000000000000,", ",,", "results.csv:2: expected results or an error"),
         ("mountain:4", '"mountain:4', "damaged"),
     ],
 )

@@ -56,7 +56,7 @@ def test_tables_are_there_while_a_sweep_runs(
     config = {
         "scene": {"spd": "tetra", "size": 2},
         "picture": {"resolution": 8},
-        "sweep": {"processors": [1, 2, 4]},
+        "sweep": {"processors": [2, 4, 8]},
         "policy": "ray",
     }
     running.run_sweep(config, out=tmp_path, watcher=Looking())

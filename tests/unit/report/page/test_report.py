@@ -20,7 +20,9 @@ from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
 from simmpp.report.page.stills import write_stills
-from simmpp.sweeps.rows import NUMBERS, result_columns
+from simmpp.report.rungs import bench_columns
+from simmpp.sweeps.columns import NUMBERS, result_columns
+from simmpp.sweeps.profits import profit_columns, profit_rows
 from simmpp.sweeps.tables import write_csv
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
@@ -186,11 +188,11 @@ def test_pictures_of_runs_are_in_the_page_and_those_of_reports_are_not(tmp_path:
     for name in ("gantt.svg", "time-profit-old.svg", "accounts-by-policy.png"):
         (figures / name).write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (figures / "gantt.png").write_bytes(b"much longer " * 100)
-    (tmp_path / "bench.csv").write_text("rung,error\nfull,0\n")
-    bench, runs = beside(tmp_path)
+    (tmp_path / "sensitivity-time.csv").write_text("factor,total\nlatency,0\n")
+    sensitivity, runs = beside(tmp_path)
     assert [each.name for each in runs.pictures] == ["gantt"]
     assert runs.pictures[0].data.startswith("data:image/svg+xml;base64,")
-    assert (bench.name, bench.tables[0].rows) == ("Run time against error", [["full", "0"]])
+    assert (sensitivity.name, sensitivity.tables[0].rows) == ("Sensitivity", [["latency", "0"]])
 
 
 def test_figures_are_files_with_the_same_bytes_each_time(tmp_path: Path) -> None:
@@ -199,3 +201,47 @@ def test_figures_are_files_with_the_same_bytes_each_time(tmp_path: Path) -> None
     again = [path for pair in write_stills(points.figures[:1], tmp_path / "2") for path in pair]
     assert [path.name for path in once] == ["time-profit.png", "time-profit.svg"]
     assert [path.read_bytes() for path in once] == [path.read_bytes() for path in again]
+
+
+def test_a_bench_is_a_figure(tmp_path: Path) -> None:
+    keys = ("scene", "processors", "fraction")
+    rows = [
+        dict.fromkeys(bench_columns(keys), 0.1 / seeds)
+        | {"scene": "tetra:5", "processors": 64, "fraction": x, "policy": policy}
+        | {"method": "simulate", "seeds": seeds, "groups": 2, "reference_seeds": 32 - seeds}
+        | {"cpu_s": 0.5 * seeds, "trace_s": ""}
+        for seeds in (1, 2, 4)
+        for x in (0.1, 0.5)
+        for policy in ("object", "concurrent")
+    ]
+    write_csv(rows, bench_columns(keys), tmp_path / "bench.csv")
+    (panel, _) = page_of(tmp_path).data["figures"]["run-time-against-error"]["plates"][0]["panels"]
+    (trace,) = panel["data"]
+    assert trace["x"] == [1.0, 2.0, 4.0]  # seconds of both policies at one of two points
+    assert trace["y"] == pytest.approx([0.1, 0.05, 0.025])
+    assert trace["text"] == ["1", "2", "4"]
+
+
+def test_intervals_are_those_of_profits_csv_where_it_is_of_the_same_seeds(tmp_path: Path) -> None:
+    rows = sweep(["object", "ray"], fraction=[0.1, 1.0])
+    profits = profit_rows(rows)
+    for row_ in profits:
+        row_ |= {"time_profit_low": 0.25, "n": row_["n"] + (row_["fraction"] == 1.0)}
+    write_csv(profits, profit_columns(), written(tmp_path, rows) / "profits.csv")
+    found = read_folder(tmp_path)
+    lows = {r["fraction"]: r["time_profit_low"] for r in points_of(rows, (), found.profits).profits}
+    assert lows[0.1] == 0.25
+    assert lows[1.0] != 0.25
+
+
+def test_what_a_method_does_not_know_is_left_out() -> None:
+    """The analytical model knows neither communication nor waiting."""
+    rows = [r | {"method": "simulate"} for r in sweep(["object", "ray"], fraction=[0.1, 1.0])]
+    model = {"method": "analytical", "communication_ps": "", "waiting_ps": "", "load_messages": ""}
+    rows += [r | model for r in rows]
+    points = points_of(rows, ("method",))
+    assert points.axes["method"] == ["analytical", "simulate"]
+    for number, profit in enumerate(points.profits):
+        assert bool(points.shares(number)) == (profit["method"] == "simulate")
+        assert bool(points.messages(number)) == (profit["method"] == "simulate")
+    json.dumps(depth_of(points), allow_nan=False)
