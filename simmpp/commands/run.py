@@ -87,9 +87,13 @@ def run_command(
     folder(out, "--out")
     window_ps = None if window is None else window_of(window, "--timeline-window")
     _check_timeline(timeline, window_ps)
-    if config.settings.sweep:
-        notice("run simulates one point; the values under 'sweep' are for simmpp sweep")
     folder(figures, "--figures")
+    settings = config.settings
+    if settings.sweep or settings.tolerance is not None:
+        notice(
+            "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
+            "are for simmpp sweep"
+        )
     looks = Looks(picture, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
@@ -108,9 +112,9 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
     from simmpp.report.summary import summary
-    from simmpp.sweeps.point import make_point, refuse_unread
+    from simmpp.sweeps.point import make_point, refuse_models
 
-    refuse_unread(config)
+    refuse_models(config)
     if looks.picture or verify:
         _require_scene(config, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config))

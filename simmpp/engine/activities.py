@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.dispatch import dispatch
 from simmpp.engine.fetched import admit_object, touch, unpin
 from simmpp.engine.layout import (

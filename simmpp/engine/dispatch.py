@@ -10,7 +10,7 @@ transfer makes at least one test, and stale loads can herd rays but not bounce t
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.hops import note_hops
 from simmpp.engine.layout import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.memory import (

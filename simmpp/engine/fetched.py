@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.hops import note_hops
 from simmpp.engine.layout import Run
 from simmpp.engine.memory import object_bytes, owners, pes, rays, recent, want_rows, wants

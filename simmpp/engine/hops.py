@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import Run
 from simmpp.engine.memory import ray_hops, rays
 from simmpp.machine.torus import hops

@@ -161,6 +161,7 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "sort_items": I8,
     "tested_rays": I4,
     "tested_objects": I4,
+    "free_ps": I8,  # from when on each link and port is free; empty without contention
     "ray_hops": I4,
     "log": EVENT,
 }
@@ -178,6 +179,7 @@ PARAMETERS = (
     "latency_ps",
     "hop_latency_ps",
     "bytes_per_s",  # the smaller of link and injection bandwidth
+    "contends",  # links and ports serve one message at a time
     "header_bytes",
     "request_bytes",
     "ray_bytes",

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.memory import log, messages, pes
 

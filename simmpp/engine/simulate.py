@@ -92,7 +92,7 @@ def _check(
         raise ConfigError(f"no engine '{engine}'; expected one of {', '.join(ENGINES)}")
     if ready_order not in READY_ORDERS:
         raise ConfigError(f"no order '{ready_order}'; expected one of {', '.join(READY_ORDERS)}")
-    check_fit(workload, machine, placement, policy)
+    check_fit(workload, machine, placement)
     check_counters(workload, machine)
 
 

@@ -21,9 +21,10 @@ from simmpp.engine.layout import (
     Run,
 )
 from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
-from simmpp.engine.memory import pes, rays
+from simmpp.engine.memory import itinerary_offsets, pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
+from simmpp.machine.links import LINKS, ROWS_PER_PE
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
@@ -134,6 +135,7 @@ def new_state(
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
+    n_links = ROWS_PER_PE * machine.processors if machine.contention == LINKS else 0
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -143,6 +145,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "test_ps": machine.test.of_objects(workload),
         "owners": placement.owners,
         "copy_costs": np.array(costs, COPY),
+        "free_ps": np.zeros(n_links, np.int64),
     }
 
 
@@ -186,7 +189,6 @@ def _own_arrays(
         "log": 2 * LOG_ROWS + most_sent if logs else 0,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
     marks = ("wants_marks", "partners_marks", "messages_marks")
     return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
 
@@ -210,6 +212,7 @@ def _parameters(
         "z": z,
         "n_objects": workload.n_objects,
         "bytes_per_s": min(limits, default=0),
+        "contends": machine.contention == LINKS,
         "transient": placement.transient,
         "row_bytes": row_bytes(placement, workload.n_objects),
         "all_resident": policy.all_resident,
@@ -238,7 +241,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pes(s)[me].ready_last = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
-        rays(s)[ray].next = NONE
+        rays(s)[ray].at, rays(s)[ray].next = itinerary_offsets(s)[ray], NONE
         if pe.ready_first == NONE:
             pe.ready_first = ray
         else:

@@ -10,7 +10,6 @@ from typing import TypedDict
 from simmpp.engine.log import Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
-from simmpp.errors import ConfigError
 from simmpp.machine.machine import Machine
 from simmpp.machine.work import total_compute_ps
 from simmpp.placement.place import place
@@ -19,6 +18,7 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.strict import misplaced
 from simmpp.sweeps.config import Config
+from simmpp.sweeps.methods import SIMULATE
 from simmpp.workload.workload import Workload
 
 REFERENCE, CEILING = "object", "replicated"
@@ -63,23 +63,19 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
 
     Raises ConfigError if the memory or the machine's shape does not fit.
     """
-    refuse_unread(config)
+    refuse_models(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
     placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
     return Point(config, workload, machine, placement, seed)
 
 
-def refuse_unread(config: Config) -> None:
-    """Raise ConfigError for keys that a simulation does not read: other methods, more seeds."""
-    settings, source = config.settings, config.source
-    if settings.method != "simulate":
-        raise ConfigError(f"method: value {settings.method!r}: expected simulate here")
-    given = [] if settings.tolerance is None else ["tolerance"]
-    given += ["max_seeds"] if "max_seeds" in settings.model_fields_set else []
-    for key in given:
-        problem = "not yet: expected it not to be given; simulations take the key seeds"
-        raise misplaced((key,), problem, source.places if source else {})
+def refuse_models(config: Config) -> None:
+    """Raise ConfigError for a method that simulates nothing."""
+    method = config.settings.method
+    if method != SIMULATE:
+        places = config.source.places if config.source else {}
+        raise misplaced(("method",), f"value {method!r}: expected {SIMULATE} here", places)
 
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:

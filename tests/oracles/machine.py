@@ -34,6 +34,7 @@ class Simulation(Dispatch):
             "arrive": self.arrive,
             "begin": self.begin,
             "dispatch": self.dispatch,
+            "depart": self.depart,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -171,7 +172,7 @@ def simulate(
     ready_order: str = "depth-first",
     rules: Rules | None = None,
 ) -> Outcome:
-    """Run a workload on a machine without network contention, under a policy or other rules."""
+    """Run a workload on a machine, under a policy or other rules."""
     rules = rules or RULES[policy.name]
     simulation = Simulation(workload, machine, placement, policy, ready_order, rules)
     simulation.run()

@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 from simmpp.cli import main
 from simmpp.compiled import cache_folder
 from simmpp.errors import ModelError
-from simmpp.sweeps.rows import COLUMNS
+from simmpp.sweeps.columns import COLUMNS
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 """Compiled code is shared with the other tests; workloads are not."""
@@ -161,7 +161,7 @@ def test_mistakes() -> None:
         "simmpp: error: --set engine: value"
     )
     assert refused("run", "c.yaml", "--set", "method=analytical").startswith(
-        "simmpp: error: method"
+        "simmpp: error: --set method: value 'analytical': expected simulate here"
     )
     assert refused("run", "c.yaml", "--set", "scene=bad.nff").startswith(
         "simmpp: error: bad.nff:2:"
@@ -219,8 +219,10 @@ def test_run_says_that_it_does_not_sweep() -> None:
     done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
     assert done.exit_code == 0, done.output
     assert done.stderr == (
-        "simmpp: run simulates one point; the values under 'sweep' are for simmpp sweep\n"
+        "simmpp: run simulates one point with one seed; the values under 'sweep', tolerance and "
+        "refine are for simmpp sweep\n"
     )
+    assert simmpp("run", "c.yaml", "--set", "tolerance=2%").stderr == done.stderr
 
 
 def test_one_of_something_is_no_plural() -> None:
