@@ -69,10 +69,14 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = self.state["logs"] or self.state["record_tests"]
-        return not records and run_alone(self.state.runs)
+        if records or not run_alone(self.state.runs):
+            return False
+        if self._progress is not None:
+            self._progress(0)
+        return True
 
     def _make_room(self) -> None:
-        self.state.ensure_room()
+        self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)
         needed = len(self.state.messages) + len(self._lines) + 1
         if len(self._heap) < needed:
             heap = np.zeros(needed, EVENT_KEY)
@@ -116,9 +120,9 @@ def _run(
 
 @njit
 def _short_of_room(s: Run) -> bool:
-    room = s.messages_n - messages_marks(s)[USED]
-    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
-    return short or (s.logs and s.n_logged >= s.log_n - 2)
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    short = s.messages_n - messages_marks(s)[USED] < most
+    return short or (s.logs and s.log_n - s.n_logged < most + 2)
 
 
 @njit

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, PACK, Row, Run
+from simmpp.engine.log import note_send
 from simmpp.engine.memory import (
     copy_costs,
     free_ps,
@@ -71,6 +72,8 @@ def send(
         partner_rows(s)[partner].sent_ps = depart_ps
         if kind in (OBJECT, RAYS):
             note_exchange(s, me, partner)
+    if s.logs:
+        note_send(s, me, row, now_ps)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return depart_ps

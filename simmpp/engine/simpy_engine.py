@@ -76,8 +76,8 @@ class SimpyRun:
         phase = BEGIN
         yield self._instant(me, 0)
         while True:
-            state.ensure_room()
             now_ps = environment.now
+            state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = step(runs, me, phase, message, now_ps)
             phase, consumed, n_sent = state.report.tolist()
@@ -143,7 +143,7 @@ class SimpyRun:
         self.arrivals += 1
         self._inboxes[destination].append(row)
         if self._logs:
-            self.state.ensure_room()
+            self.state.ensure_room(self._environment.now)
             self._note_arrival(self.state.runs, row)
         asleep = self._asleep[destination]
         if asleep is not None:

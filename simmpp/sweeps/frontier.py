@@ -41,14 +41,6 @@ class Group:
         """What its points have in common."""
         return self.points[0].point.comparison
 
-    def more(self, seeds: Iterable[int]) -> list[PlannedPoint]:
-        """Its points with further seeds; they have the same workload."""
-        first = self.points[0]
-        return [
-            PlannedPoint(point, task_of(point, first.task.digest), first.scene)
-            for point in self.comparison.points(seeds)
-        ]
-
 
 class Frontier:
     """The points that are asked for, and which of them wait for outcomes."""
@@ -102,7 +94,8 @@ class Frontier:
             if wanted == group.seeds:
                 self._unsettled.discard(group)
                 return
-            points = group.more(seeds_in_order(self._settings.seeds, wanted)[group.seeds :])
+            seeds = seeds_in_order(self._settings.seeds, wanted)[group.seeds :]
+            points = _planned(group.comparison, seeds, group.points[0])
             group.points += points
             group.seeds = wanted
             yield from self._ask(group, points)
@@ -171,14 +164,19 @@ class Frontier:
                 yield self._moved(line[i], key, value, depth)
 
     def _moved(self, beside: Group, key: str, value: Fraction, depth: int) -> Group:
-        comparison = moved(beside.comparison, key, value)
         seeds = first_seeds(self._settings)
-        first = beside.points[0]
-        points = [
-            PlannedPoint(point, task_of(point, first.task.digest), first.scene)
-            for point in comparison.points(seeds)
-        ]
+        points = _planned(moved(beside.comparison, key, value), seeds, beside.points[0])
         return Group(points, beside.depths | {key: depth}, len(seeds))
+
+
+def _planned(
+    comparison: Comparison, seeds: Iterable[int], like: PlannedPoint
+) -> list[PlannedPoint]:
+    """Points on the workload of another one."""
+    return [
+        PlannedPoint(point, task_of(point, like.task.digest), like.scene)
+        for point in comparison.points(seeds)
+    ]
 
 
 def _groups(plan: Plan) -> list[Group]:

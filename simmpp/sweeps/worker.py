@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from threading import Lock
@@ -16,16 +15,13 @@ from simmpp.sweeps.case import Case
 from simmpp.sweeps.methods import METHODS, Method
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.provenance import difference, result_versions
+from simmpp.sweeps.stopwatch import Seconds, Stopwatch, now
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.warm import warm_up
 from simmpp.sweeps.workloads import shared_workload
 from simmpp.workload.workload import Workload
 
 Made = TypeVar("Made")
-
-
-class TimedOut(SimmppError):
-    """A point took longer than it may."""
 
 
 class Kept(Generic[Made]):
@@ -45,7 +41,7 @@ class Kept(Generic[Made]):
 
 
 _workloads: Kept[Workload] = Kept(2)
-_placements: Kept[tuple[Placement, float]] = Kept(4)
+_placements: Kept[tuple[Placement, Seconds]] = Kept(4)
 
 
 def keep_workload(workload: Workload) -> None:
@@ -94,16 +90,18 @@ def _simulated(task: Task, timeout_s: float | None) -> Outcome:
         place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
         tick=watch.look,
     )
-    numbers, wall_s = method.numbers(case), watch.seconds
-    return Outcome(task.key, numbers, _effective_fraction(case, method), wall_s)
+    numbers = method.numbers(case)
+    took = watch.seconds
+    return Outcome(task.key, numbers, _effective_fraction(case, method), took.wall, took.cpu)
 
 
-def _drawn(task: Task, case: Case) -> tuple[Placement, float]:
+def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
     """The placement and the seconds that drawing it took."""
-    began_s = time.perf_counter()
-    config, nb = task.config, case.machine.processors
-    placement = place(case.workload, nb, config.memory, config.placement_rules, task.seed)
-    return placement, time.perf_counter() - began_s
+    began, config = now(), task.config
+    placement = place(
+        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
+    )
+    return placement, now() - began
 
 
 def _effective_fraction(case: Case, method: Method) -> float:
@@ -113,27 +111,3 @@ def _effective_fraction(case: Case, method: Method) -> float:
     if method.is_placed:
         return case.place().effective_fraction
     return max(float(case.fraction), 1 / case.machine.processors)
-
-
-class Stopwatch:
-    """Seconds of one task; the placement counts whoever drew it."""
-
-    def __init__(self, timeout_s: float | None) -> None:
-        self._timeout_s, self._began_s = timeout_s, time.perf_counter()
-        self._placing_s = 0.0
-
-    def count(self, drawn: tuple[Placement, float]) -> Placement:
-        """A placement with the seconds that it took: from here on the event loop is timed."""
-        placement, self._placing_s = drawn
-        self._began_s = time.perf_counter()
-        return placement
-
-    @property
-    def seconds(self) -> float:
-        """Placement + event loop."""
-        return self._placing_s + time.perf_counter() - self._began_s
-
-    def look(self, rays_left: int) -> None:
-        """Raise TimedOut if it is time."""
-        if self._timeout_s is not None and self.seconds > self._timeout_s:
-            raise TimedOut(f"timeout: not finished after {self._timeout_s:g} s")

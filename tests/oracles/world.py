@@ -82,6 +82,7 @@ class World:
         rays: tuple[int, ...] = (),
     ) -> int:
         """Pack a message and let it depart; returns the time of that."""
+        begin = clock
         cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
         clock = self.pay("communication", pe, clock, cost)
         message = Message(
@@ -100,6 +101,7 @@ class World:
         if kind in (OBJECT, RAYS):
             pe.partners.add(destination)
         self.ledger.sent.append(message)
+        self.ledger.did(pe, begin, "send", clock, message)
         if self.machine.contention == "links":
             self.come_to(clock, message, self.network.way(message))
         else:
