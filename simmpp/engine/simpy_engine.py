@@ -122,6 +122,8 @@ class SimpyRun:
     def _move(self, head: Event) -> None:
         """The head of a message is at a port or link: it goes on, or the message arrives."""
         row, priority = head.value
+        if self._logs:
+            self.state.ensure_room(self._environment.now)
         next_ps = self._move_head(self.state.runs, row)
         if self.state.messages["arrival_ps"][row] != NONE:
             self._let_arrive(row)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from statistics import fmean
 from typing import Any
@@ -182,3 +183,27 @@ def test_bars_of_policies_come_in_the_order_of_their_colours() -> None:
         "concurrent dataflow",
         "replicated scene",
     ]
+
+
+def test_plotly_reads_html_so_labels_are_escaped() -> None:
+    hostile = "<b>\"eager\"</b> & 'lazy'"
+    points = points_of(
+        with_further([row(p, fraction=x) for p in ("object", hostile) for x in (0.1, 1.0)]), FURTHER
+    )
+    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    assert [trace["name"] for trace in drawn(panel)["data"]] == [
+        "object dataflow",
+        html.escape(hostile),
+    ]
+    named = with_further([row(point=hostile), row(point="plain")])
+    points = points_of(named, FURTHER)
+    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    assert html.escape(hostile) in drawn(panel)["layout"]["xaxis"]["ticktext"]
+
+
+def test_values_that_look_alike_have_panels_of_their_own() -> None:
+    rows = with_further([row(processors=n, fraction=x) for n in (1, 2, 3) for x in (0.1, 0.10001)])
+    points = points_of(rows, FURTHER)
+    figure = next(profit_figures(Shown(points.profits, points.axes)))
+    (plate,) = figure.plates.values()
+    assert [panel.title for panel in plate] == ["x = 10 %", "x = 10 % (2)"]
