@@ -56,7 +56,7 @@ class Kind:
 
 KINDS = (
     Kind("full", range(27), range(12)),
-    Kind("curve", range(100, 112), range(100, 108), together=True),
+    Kind("curve", range(100, 124), range(100, 108), together=True),
     Kind("pixels / 4", range(2), pixels=1 / 2),
     Kind("pixels / 16", range(27), pixels=1 / 4),
     Kind("half of the rays", range(1), part=Fraction(1, 2)),

@@ -2,7 +2,7 @@
 
     python experiments/calibration/calibration.py [FOLDER]
 
-Simulates figures 3, 4 and 6 of Nebel 1998 at reduced resolution for every choice of choices.py and
+Simulates figures 3, 4 and 6 of Nebel 1998 (256 x 256, one seed) for every choice of choices.py and
 judges the claims by the package's own predicates. Writes calibration.csv (a row per choice),
 details.csv (what was simulated, by choice and claim) and the figure. Finished simulations are kept
 in FOLDER (out/calibration): a second call continues.
@@ -17,7 +17,7 @@ from contextlib import closing
 from itertools import chain
 from pathlib import Path
 
-from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, drawn, overrides_of
+from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, overrides_of
 from table import draw
 
 from simmpp.report.claims import judge
@@ -39,8 +39,6 @@ PUBLISHED = HERE.parent / "nebel98" / "claims.csv"
 """The default at full fidelity."""
 FIGURES = ("figure3", "figure4", "figure6")
 SEEDS = "[0]"
-DRAWN = 8
-"""Sets that are drawn from all ranges at once; a power of two."""
 
 CLAIMS = ("F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2")
 """Those about what is simulated; F2a and F2b are about the analytical model."""
@@ -122,7 +120,7 @@ def main() -> None:
     rows: list[Row] = []
     details: list[Row] = []
     with closing(Journal(folder, {"versions": result_versions()})) as journal:
-        for choice in (DEFAULT, *SINGLE, *SEVERAL, *FULL, *drawn(DRAWN)):
+        for choice in (DEFAULT, *SINGLE, *SEVERAL, *FULL):
             plans = plans_of(choice)
             run(plans.values(), journal)
             judged = verdicts(plans, journal.outcomes)

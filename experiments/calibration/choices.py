@@ -2,27 +2,19 @@
 
 Single choices go to the ends of the ranges that the preset t3e gives (`simmpp machine t3e`), or to
 another reading of what the paper leaves open; packing and the bytes of a ray, whose indices are
-next to nothing (../sensitivity), are left out. Several at once are drawn from the same ranges.
+next to nothing (../sensitivity), are left out. Several at once combine what helps some claim.
 """
 
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
-
-from scipy.stats import qmc
 
 from simmpp.placement.residents import resident_count
 from simmpp.scene.load import load_scene
 from simmpp.sweeps.config import Config
 
-sys.path.append(str(Path(__file__).parent.parent / "sensitivity"))
-from factors import FACTORS, Values, values_at
-
-SEED = 1998
 AS_X = "memory.transient=as many as x"
 """Not a key: the transient memory of each point holds x N objects."""
 
@@ -33,7 +25,7 @@ class Choice:
 
     name: str
     kind: str
-    """default, constant, policy, reading, several, full or drawn."""
+    """default, constant, policy, reading, several or full."""
     sets: tuple[str, ...] = ()
     """``KEY=VALUE``; the rest has its default."""
     resolution: int = 256
@@ -93,6 +85,7 @@ SINGLE = [
 
 FAST = "machine.send_startup=5 us; machine.receive_startup=8 us"
 SLOW = "machine.send_startup=20 us; machine.receive_startup=30 us"
+BEST = f"placement.pixels=interleaved; {FAST}; {AS_X}"
 BLIND = "policy.merge_requests=false; policy.load_info=none"
 SEVERAL = _one(
     "several",
@@ -101,7 +94,8 @@ SEVERAL = _one(
     f"placement.pixels=interleaved; {AS_X}",
     "placement.pixels=interleaved; policy.ask_at_least=8",
     f"placement.pixels=interleaved; {FAST}; machine.ray=11 us",
-    f"placement.pixels=interleaved; {FAST}; {AS_X}",
+    BEST,
+    f"placement.pixels=interleaved; {FAST}; {AS_X}; policy.min_load=50%",
     f"placement.pixels=interleaved; {FAST}; memory.residents=nearest; policy.ask_at_least=8",
     "policy.ask_at_least=8; policy.min_load=50%",
     "policy.ask_at_least=8; memory.residents=nearest",
@@ -109,51 +103,13 @@ SEVERAL = _one(
     BLIND,
     f"{BLIND}; placement.pixels=tiles",
     f"{BLIND}; placement.pixels=random; memory.residents=nearest",
+    f"{BLIND}; placement.pixels=random; memory.residents=nearest; machine.send_startup=12 us; "
+    "machine.receive_startup=24 us",
     f"{BLIND}; placement.pixels=random; memory.residents=nearest; {SLOW}",
 )
 """Combinations of choices that, alone, make some claim hold or come near to it."""
-FULL = [
-    Choice(f"{text}, at 512 x 512", "full", tuple(text.split("; ")), resolution=512)
-    for text in (f"placement.pixels=interleaved; {AS_X}", "policy.ask_at_least=8")
-]
-"""Sets for which more claims hold than for the default, at full resolution."""
-
-
-def drawn(number: int) -> list[Choice]:
-    """A Sobol sequence over all factors of the sensitivity analysis that a configuration has."""
-    sample = qmc.Sobol(len(FACTORS), rng=SEED).random(number)
-    return [
-        Choice(f"drawn {n}", "drawn", assignments(values_at(quantiles)))
-        for n, quantiles in enumerate(sample.tolist())
-    ]
-
-
-def assignments(values: Values) -> tuple[str, ...]:
-    """The configuration of a draw; x is swept, and objects have the scene's sizes."""
-    startup = float(values["startup_us"])
-    info = values["load_info"]
-    copies = f"{values['copy_mb_per_s']} MB/s"
-    kept = {"0": "memory.transient=0", "1%": "memory.transient=10", "x": AS_X}
-    return (
-        f"machine.send_startup={startup / 3:.3f} us",
-        f"machine.receive_startup={startup * 2 / 3:.3f} us",
-        f"machine.pack.bandwidth={copies}",
-        f"machine.unpack.bandwidth={copies}",
-        f"machine.test={values['test_us']} us",
-        f"machine.ray={values['ray_us']} us",
-        f"machine.ray_bytes={float(values['ray_bytes']):.0f} B",
-        f"machine.quantum={float(values['quantum']):.0f}",
-        f"policy.ask_at_least={float(values['ask_at_least']):.0f}",
-        f"policy.min_load={float(values['min_load']):.1%}",
-        f"policy.batch={float(values['batch']):.0f}",
-        f"policy.load_info={'{refresh: 5 ms}' if str(info).startswith('refresh') else info}",
-        f"policy.merge_requests={values['merge_requests']}",
-        f"memory.residents={values['residents']}",
-        kept[str(values["transient"])],
-        f"ready_order={values['ready_order']}",
-        f"placement.pixels={values['pixels']}",
-        f"placement.owners={values['owners']}",
-    )
+FULL = [Choice(f"{BEST}, at 512 x 512", "full", tuple(BEST.split("; ")), resolution=512)]
+"""The set for which most claims hold, at full resolution."""
 
 
 def overrides_of(choice: Choice, figure: Config) -> list[str]:

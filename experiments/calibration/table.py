@@ -30,7 +30,7 @@ def draw(rows: Sequence[Row], claims: Sequence[str], stem: Path) -> None:
         places.append(places[-1] + step if places else 0.0)
     with matplotlib.rc_context(SETTINGS):
         height = ROW_IN * (places[-1] + 1) + 1.1
-        figure = Figure(figsize=(8.5, height), layout="constrained")
+        figure = Figure(figsize=(10, height), layout="constrained")
         axes = figure.subplots()
         for word, style in MARKS.items():
             cells = [
@@ -43,11 +43,11 @@ def draw(rows: Sequence[Row], claims: Sequence[str], stem: Path) -> None:
         for row, place in zip(rows, places, strict=True):
             count = f"{row['n_holds']} + {row['n_in_part']}"
             axes.text(len(claims) - 0.3, place, count, fontsize=7.5, va="center")
-        axes.text(len(claims) - 0.3, -1.4, "holds + in part", fontsize=7.5, va="center")
+        axes.text(len(claims) - 0.3, -1.5, "holds +\nin part", fontsize=7.5, va="center")
         axes.set_yticks(places, [short(row["choice"]) for row in rows], fontsize=7.5)
         axes.set_xticks(range(len(claims)), claims)
         axes.xaxis.tick_top()
-        axes.set(xlim=(-0.6, len(claims) + 1.1), ylim=(places[-1] + 0.8, -0.8))
+        axes.set(xlim=(-0.6, len(claims) + 1.2), ylim=(places[-1] + 0.8, -0.8))
         axes.tick_params(length=0)
         axes.grid(axis="y", linewidth=0.3, color="0.85")
         axes.set_axisbelow(True)
@@ -56,5 +56,8 @@ def draw(rows: Sequence[Row], claims: Sequence[str], stem: Path) -> None:
 
 
 def short(name: str) -> str:
-    """A choice without the sections of its keys."""
-    return re.sub(r"\b(machine|memory|picture|placement|policy)\.", "", name)
+    """A choice without the sections of its keys, and the longest of them in fewer words."""
+    name = re.sub(r"\b(machine|memory|picture|placement|policy)\.", "", name)
+    name = re.sub(r"send_startup=(\d+) us; receive_startup=(\d+) us", r"startups \1 + \2 us", name)
+    name = name.replace("transient=as many as x", "transient=x")
+    return name.replace("merge_requests=false; load_info=none", "unmerged, no load_info")

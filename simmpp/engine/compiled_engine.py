@@ -69,7 +69,11 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = self.state["logs"] or self.state["record_tests"]
-        return not records and run_alone(self.state.runs)
+        if records or not run_alone(self.state.runs):
+            return False
+        if self._progress is not None:
+            self._progress(0)
+        return True
 
     def _make_room(self) -> None:
         self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)

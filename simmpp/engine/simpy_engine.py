@@ -121,6 +121,8 @@ class SimpyRun:
         self._environment.schedule(departure, priority, delay_ps)
 
     def _enter_network(self, departure: Event) -> None:
+        if self._logs:
+            self.state.ensure_room(self._environment.now)
         self._depart(self.state.runs, departure.value)
         self._let_arrive(departure.value)
 

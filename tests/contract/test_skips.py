@@ -208,3 +208,11 @@ def state_of(case: Case) -> State:
     )
     compiled_engine.CompiledRun(state).run()
     return state
+
+
+def test_progress_is_told_without_events_too() -> None:
+    told: list[int] = []
+    case = nothing_remote(1)
+    parts = case.workload, case.machine, case.placement, case.policy
+    simmpp.simulate(*parts, progress=told.append)
+    assert told == [0]

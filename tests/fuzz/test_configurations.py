@@ -110,7 +110,7 @@ def runs_or_is_refused(*overrides: str) -> None:
             answered("run", "c.yaml", *sets)
 
 
-@examples(150)
+@examples(60)
 @given(data=st.data())
 def test_configurations_with_something_changed(data: st.DataObject) -> None:
     tree = data.draw(st.sampled_from(BASES))
@@ -120,7 +120,7 @@ def test_configurations_with_something_changed(data: st.DataObject) -> None:
     runs_or_is_refused()
 
 
-@examples(100)
+@examples(40)
 @given(data=st.data())
 def test_any_bytes_for_a_configuration(data: st.DataObject) -> None:
     content = written(data.draw(st.sampled_from(BASES))).encode()
@@ -130,7 +130,7 @@ def test_any_bytes_for_a_configuration(data: st.DataObject) -> None:
     runs_or_is_refused()
 
 
-@examples(100)
+@examples(40)
 @given(key=SETS | KEYS | st.text(max_size=8), value=TREES.map(written) | st.text(max_size=8))
 def test_any_override(key: str, value: str) -> None:
     Path("c.yaml").write_text(written(BASES[1]))

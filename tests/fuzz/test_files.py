@@ -63,7 +63,7 @@ def read_or_refused(command: str, file: str) -> None:
 # --- NFF ---
 
 
-@examples(100)
+@examples(40)
 @given(data=st.data())
 def test_nff_with_words_changed(data: st.DataObject) -> None:
     words = NFF.replace("\n", " \n ").split(" ")
@@ -106,7 +106,7 @@ MESH_WORDS = NUMBERS | st.sampled_from(
 )  # fmt: skip
 
 
-@examples(100)
+@examples(40)
 @given(data=st.data())
 def test_meshes_with_words_changed(data: st.DataObject) -> None:
     kind = data.draw(st.sampled_from(sorted(MESHES)))
@@ -116,7 +116,7 @@ def test_meshes_with_words_changed(data: st.DataObject) -> None:
     read_or_refused("scene", f"a.{kind}{cut}")
 
 
-@examples(80)
+@examples(30)
 @given(data=st.data())
 def test_any_bytes_for_a_mesh(data: st.DataObject) -> None:
     kind, content = data.draw(st.sampled_from([*BINARY.items(), *MESHES.items()]))
@@ -170,7 +170,7 @@ def tables(data: st.DataObject) -> tuple[dict[str, Any], list[int], list[int], d
     return rays, offsets, tests, objects
 
 
-@examples(120)
+@examples(40)
 @given(data=st.data())
 def test_npz_with_columns_changed(data: st.DataObject) -> None:
     rays, offsets, tests, objects = tables(data)
@@ -183,7 +183,7 @@ def test_npz_with_columns_changed(data: st.DataObject) -> None:
     read_or_refused("workload", "a.npz")
 
 
-@examples(80)
+@examples(30)
 @given(data=st.data())
 def test_parquet_with_columns_changed(data: st.DataObject) -> None:
     rays, _, tests, objects = tables(data)
@@ -205,7 +205,7 @@ def test_parquet_with_columns_changed(data: st.DataObject) -> None:
     read_or_refused("workload", "a.parquet")
 
 
-@examples(80)
+@examples(30)
 @given(data=st.data(), suffix=st.sampled_from(["npz", "parquet", "objects.parquet"]))
 def test_any_bytes_for_a_workload(data: st.DataObject, suffix: str) -> None:
     named = {f"ray_{k}": v for k, v in RAYS.items()} | {

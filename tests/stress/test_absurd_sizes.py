@@ -35,8 +35,8 @@ def test_sweeps_that_never_end(tmp_path: Path) -> None:
     done = CliRunner().invoke(
         main, ["sweep", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "o")]
     )
-    assert done.exit_code == 2 and len(done.stderr.splitlines()) == 1
-    assert f"expected at most {MOST_POINTS} points" in done.stderr
+    assert done.exit_code == 2
+    assert f"expected at most {MOST_POINTS} points" in done.stderr.splitlines()[-1]
 
 
 @pytest.mark.parametrize(

@@ -329,12 +329,12 @@ def test_run_writes_a_timeline_of_every_policy() -> None:
 
 
 def test_run_draws_figures_of_every_policy() -> None:
-    command = ("run", "c.yaml", "--set", "policy={name: ray, label: 'by r/y'}", "--figures", "f")
+    command = ("run", "c.yaml", "--set", "policy={name: object, label: 'by o/t'}", "--figures", "f")
     assert simmpp(*command, "--timeline", "t.parquet").exit_code == 0
     names = ("activity", "memory", "pixels", "progress", "torus", "traffic")
-    for policy in ("object", "by-r-y", "replicated"):
+    for policy in ("by-o-t", "replicated"):
         for name in names:
             assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
             assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
-    assert len(list(Path("f").iterdir())) == 3 * 2 * len(names)
+    assert len(list(Path("f").iterdir())) == 2 * 2 * len(names)
     assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")

@@ -96,10 +96,10 @@ def _progress(figure: Figure, motion: Motion) -> None:
     upper.stairs(100 * motion.utilisation, edges, color=STYLES[0]["color"], label="PEs busy")
     done = np.append(0, motion.completion) * 100
     upper.plot(edges, done, color=STYLES[1]["color"], linestyle="--", label="rays finished")
-    for share, time_ps in motion.marks_ps.items():
+    for height, (share, time_ps) in zip((25, 50, 75), motion.marks_ps.items(), strict=True):
         upper.axvline(time_ps * MS, color="0.45", linewidth=0.8, linestyle=(0, (2, 2)))
         upper.annotate(
-            f"{share} %", (time_ps * MS, 50), rotation=90, ha="right", va="center",
+            f"{share} %", (time_ps * MS, height), rotation=90, ha="right", va="center",
             fontsize=7, bbox={"color": "w", "pad": 0.6, "alpha": 0.8},
         )  # fmt: skip
     upper.set(ylabel="share (%)", ylim=(0, 103), xlim=(0, max(edges[-1], 1e-9)))
@@ -112,8 +112,10 @@ def _progress(figure: Figure, motion: Motion) -> None:
         middles[has], rays[has] / sent[has], ".", markersize=3, label="mean", color="#0072B2"
     )
     lower.plot(middles[has], most[has], "_", markersize=4, label="largest", color="#D55E00")
-    lower.set(xlabel="time (ms)", ylabel="rays in a message", ylim=(0, None))
+    lower.set(xlabel="time (ms)", ylabel="rays in a message")
     if has.any():
+        lower.set_yscale("log")
+        lower.grid(axis="y", color="0.9")
         lower.legend(frameon=False, ncols=2)
     else:
         lower.text(0.5, 0.5, "no rays were sent", ha="center", transform=lower.transAxes)
@@ -141,12 +143,16 @@ def _traffic(figure: Figure, motion: Motion) -> None:
     if len(shown):
         sizes.set_yscale("log")
         sizes.set_xticks(shown, [_bytes_below(int(d)) for d in shown], fontsize=7)
+        sizes.set(xlim=(shown[0] - 0.7, shown[-1] + 0.7), ylim=(0.7, 3 * motion.sizes.max()))
         sizes.legend(frameon=False, fontsize=7)
     sizes.grid(axis="y", color="0.9")
     sizes.set(xlabel="bytes with header, less than", ylabel="messages")
     far = figure.add_subplot(grid[1, 1])
     far.bar(np.arange(len(motion.hops)), motion.hops, color=STYLES[0]["color"])
-    far.set(xlabel="links crossed", ylabel="messages")
+    far.set(xlabel="links crossed", ylabel="messages", ylim=(0, None if motion.hops.any() else 1))
+    if not motion.hops.any():
+        for axes in (matrix, sizes, far):
+            axes.text(0.5, 0.5, "no messages", ha="center", transform=axes.transAxes)
     far.xaxis.set_major_locator(MaxNLocator(integer=True))
 
 

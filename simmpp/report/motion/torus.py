@@ -16,9 +16,8 @@ from simmpp.report.motion.motion import Motion
 
 LOADS = "Blues"
 LINKS = LinearSegmentedColormap.from_list(
-    "links", matplotlib.colormaps["YlOrRd"](np.linspace(0.2, 1))
+    "links", matplotlib.colormaps["YlOrRd"](np.linspace(0.2, 1)), bad="0.9"
 )
-LINKS.set_bad("0.9")
 """Without the palest colours, which paper swallows; grey for links that nothing crossed."""
 _MOST_COLUMNS = 8
 _STUB = 0.45
