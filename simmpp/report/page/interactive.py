@@ -8,13 +8,11 @@ light and in dark.
 from __future__ import annotations
 
 import html
-import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
-from typing import Any
 
 from simmpp.report.bars import Bars
-from simmpp.report.curves import Curve, Panel, Scale, Spread, Stated
+from simmpp.report.curves import Curve, Panel, Spread, Stated
+from simmpp.report.page.plotly_axes import Drawn, layout, limited, placed
 
 SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x")
 DASHES = ("solid", "dash", "dashdot", "longdash", "dot", "longdashdot", "solid")
@@ -30,11 +28,6 @@ PARTS = {
     "loads": 2,
 }
 """Number of the colour of each part of a bar."""
-LOG_MARGIN = 1.2
-"""Room beyond the ends of a logarithmic axis."""
-LOG_STEPS, MOST_POWERS = (1, 2, 5), 4
-Drawn = dict[str, Any]
-"""A piece of a figure, as JSON data."""
 
 
 def script() -> str:
@@ -84,21 +77,12 @@ def _curves(panel: Panel) -> Drawn:
             continue
         style = style_of(panel, curve)
         traces.append(_line(curve, style, panel))
-    layout = _layout(panel.x, _limited(panel))
-    layout["shapes"] = [_stated(each) for each in panel.stated]
-    layout["annotations"] = [_remark(each, panel) for each in panel.stated if each.label]
+    made = layout(panel.x, limited(panel))
+    made["shapes"] = [_stated(each) for each in panel.stated]
+    made["annotations"] = [_remark(each, panel) for each in panel.stated if each.label]
     if panel.level is not None:
-        layout["shapes"].append(_level(panel.level))
-    return {"data": traces, "layout": layout}
-
-
-def _limited(panel: Panel) -> Scale:
-    """The vertical scale, with its ends where it is logarithmic: ticks are chosen by them."""
-    spreads = [spread for curve in panel.curves for spread in curve.points.values()]
-    if panel.y.limits or not panel.y.is_log or not spreads:
-        return panel.y
-    low, high = min(each.low for each in spreads), max(each.high for each in spreads)
-    return replace(panel.y, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
+        made["shapes"].append(_level(panel.level))
+    return {"data": traces, "layout": made}
 
 
 def _guide(curve: Curve) -> Drawn:
@@ -186,19 +170,14 @@ def _stated(stated: Stated) -> Drawn:
 
 def _remark(stated: Stated, panel: Panel) -> Drawn:
     return {
-        "x": _placed(stated.right, panel.x),
-        "y": _placed(stated.high, panel.y),
+        "x": placed(stated.right, panel.x),
+        "y": placed(stated.high, panel.y),
         "text": html.escape(stated.label).replace("\n", "<br>"),
         "showarrow": False,
         "xanchor": "right",
         "yanchor": "bottom",
         "font": {"color": "var(--muted)"},
     }
-
-
-def _placed(value: float, scale: Scale) -> float:
-    """Where plotly places a remark: on a logarithmic axis by the logarithm."""
-    return math.log10(value) if scale.is_log else value
 
 
 def _level(value: float) -> Drawn:
@@ -208,10 +187,10 @@ def _level(value: float) -> Drawn:
 
 
 def _bars(bars: Bars) -> Drawn:
-    layout = _layout(bars.x, bars.y) | {"barmode": "stack", "bargap": 0.15}
+    made = layout(bars.x, bars.y) | {"barmode": "stack", "bargap": 0.15}
     names = [html.escape(name) for name in bars.x.names]
     places = list(range(len(names)))
-    layout["xaxis"] |= {"tickvals": places, "ticktext": names}
+    made["xaxis"] |= {"tickvals": places, "ticktext": names}
     traces = [
         {
             "type": "bar",
@@ -224,38 +203,4 @@ def _bars(bars: Bars) -> Drawn:
         }
         for part, heights in bars.parts.items()
     ]
-    return {"data": traces, "layout": layout}
-
-
-def _layout(x: Scale, y: Scale) -> Drawn:
-    return {
-        "xaxis": _axis(x),
-        "yaxis": _axis(y),
-        "showlegend": False,
-        "hovermode": "closest",
-    }
-
-
-def _axis(scale: Scale) -> Drawn:
-    axis: Drawn = {
-        "title": {"text": html.escape(scale.label)},
-        "type": "log" if scale.is_log else "linear",
-        "zeroline": False,
-        "automargin": True,
-        "rangemode": "normal" if scale.is_log else "tozero",
-    }
-    if ticks := scale.ticks or (_decades(*scale.limits) if scale.is_log and scale.limits else ()):
-        texts = scale.names or [f"{tick:g}" for tick in ticks]
-        axis |= {"tickvals": list(ticks), "ticktext": [html.escape(each) for each in texts]}
-    if scale.ticks and scale.names:
-        axis |= {"range": [-0.5, len(scale.names) - 0.5]}
-    if scale.limits:
-        axis |= {"range": [_placed(end, scale) for end in scale.limits]}
-    return axis
-
-
-def _decades(low: float, high: float) -> list[float]:
-    """1, 2 and 5 of each power of ten between the ends; only powers where these are many."""
-    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    steps = LOG_STEPS if len(powers) <= MOST_POWERS else LOG_STEPS[:1]
-    return [v for p in powers for step in steps if low <= (v := step * 10.0**p) <= high]
+    return {"data": traces, "layout": made}
