@@ -1,12 +1,16 @@
 """Does `tolerance: 2%` hold its word, and what does it save? On grids it was not developed on.
 
-    python experiments/accuracy/coverage.py          # small pictures: coverage.csv
-    python experiments/accuracy/coverage.py --full   # figure 4's pictures: coverage-full.csv
+    python experiments/accuracy/coverage.py noisy|quiet|full    # writes coverage-GRID.csv
 
-Each point is simulated with POOL seeds. The first 200 give the true profits. The rest is a stream
-of draws: a repetition takes from it what the rule asks for (the functions that sweeps call), the
-next repetition begins where it ended, so all are independent. Each repetition reports an interval
-for either profit of either policy; it should hold the true one 95 times of 100.
+Each point is simulated with a pool of seeds. The first 200 give the true profits. The rest is a
+stream of draws: a repetition takes from it what the rule asks for (the functions that sweeps call),
+the next repetition begins where it ended, so all are independent of each other and of the truth
+(which all repetitions of a point share). Each repetition reports an interval for either profit of
+either policy; it should hold the true one 95 times of 100.
+
+*noisy*: small scenes, where profits vary so much that most points end at max_seeds. *quiet*: larger
+scenes and small pictures, chosen (by the deviation over 20 seeds) so that the rule stops between 8
+and 64 seeds. *full*: pictures of figure 4.
 
 The rule was developed on artificial distributions and on mountain:3, tetra:3, rings:2 and balls:2
 with 8 and 32 PEs. None of these scenes, sizes and numbers of PEs is here.
@@ -21,6 +25,7 @@ from fractions import Fraction
 from itertools import product
 from pathlib import Path
 from statistics import fmean
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,35 +37,49 @@ from simmpp.sweeps.sweep import run_sweep
 HERE = Path(__file__).parent
 TOLERANCE, TRUE = Fraction(1, 50), 200
 POLICIES = ("ray", "concurrent")
-FRACTIONS = (0.15, 0.35, 0.6, 0.85)
-SMALL = {
-    "points": list(
-        product(("mountain:4", "tetra:4", "lattice:3", "jacks:3", "tree:6"), (16, 64), FRACTIONS)
-    ),
-    "resolution": 24,
-    "pool": 1800,
-    "most": 64,
-    "repetitions": 40,
+GRIDS: dict[str, dict[str, Any]] = {
+    "noisy": {
+        "points": list(
+            product(
+                ("mountain:4", "tetra:4", "lattice:3", "jacks:3", "tree:6"),
+                (16, 64),
+                (0.15, 0.35, 0.6, 0.85),
+            )
+        ),
+        "resolution": 24,
+        "pool": 1800,
+    },
+    "quiet": {
+        "points": [
+            *product(("mountain:5", "tetra:6", "lattice:6", "jacks:4"), (24,), (0.06, 0.12, 0.25)),
+            ("tree:8", 24, 0.06),
+        ],
+        "resolution": {"mountain:5": 64, "tetra:6": 64, "jacks:4": 32},
+        "pool": 700,
+    },
+    "full": {
+        "points": [("tetra:5", 64, 0.1), ("tetra:5", 64, 0.3)],
+        "resolution": 512,
+        "pool": 440,
+    },
 }
-FULL = {
-    "points": [("tetra:5", 64, 0.1), ("tetra:5", 64, 0.7), ("rings:1", 64, 0.3)],
-    "resolution": 512,
-    "pool": 440,
-    "most": 64,
-    "repetitions": 30,
-}
-"""Of `pool` seeds per point, a repetition takes `most` at most; there are `repetitions` at most."""
+"""`pool` is the number of seeds of each point."""
+MOST, REPETITIONS, PIXELS = 64, 40, 48
+"""Seeds of a repetition and repetitions of a point at most; resolution where none is said."""
 
 Floats = NDArray[np.float64]
 Row = dict[str, str | int | float]
 
 
-def profits_of(point: tuple[str, int, float], grid: dict) -> Floats:
+def profits_of(point: tuple[str, int, float], grid: dict[str, Any]) -> Floats:
     """Profits of a point: (policy, measure, seed) float64."""
     scene, nb, x = point
+    resolution = grid["resolution"]
+    if isinstance(resolution, dict):
+        resolution = resolution.get(scene, PIXELS)
     config = {
         "scene": scene,
-        "picture": {"resolution": grid["resolution"]},
+        "picture": {"resolution": resolution},
         "processors": nb,
         "memory": {"fraction": x},
         "policy": list(POLICIES),
@@ -79,24 +98,24 @@ def profits_of(point: tuple[str, int, float], grid: dict) -> Floats:
     )
 
 
-def repetitions(profits: Floats, grid: dict) -> Iterator[Floats]:
+def repetitions(profits: Floats) -> Iterator[Floats]:
     """What each repetition draws, by the rule of a sweep: (policy, measure, n)."""
     begin = TRUE
-    for _ in range(grid["repetitions"]):
+    for _ in range(REPETITIONS):
         n, taken = 0, FEWEST
         while taken > n and begin + taken <= profits.shape[2]:
             n = taken
             values = profits[:, :, begin : begin + n].reshape(-1, n).tolist()
-            taken = seeds_wanted(values, n, TOLERANCE, grid["most"])
+            taken = seeds_wanted(values, n, TOLERANCE, MOST)
         if taken != n:
             return  # the stream ends
         yield profits[:, :, begin : begin + n]
         begin += n
 
 
-def rows_of(point: tuple[str, int, float], profits: Floats, grid: dict) -> list[Row]:
+def rows_of(point: tuple[str, int, float], profits: Floats) -> list[Row]:
     """A row for each policy and profit: how often its interval held the true one."""
-    drawn = list(repetitions(profits, grid))
+    drawn = list(repetitions(profits))
     sizes = [each.shape[2] for each in drawn]
     rows: list[Row] = []
     for (p, policy), (m, measure) in product(enumerate(POLICIES), enumerate(MEASURES)):
@@ -188,14 +207,13 @@ def _widest(rows: Sequence[Row]) -> Iterator[Row]:
         yield max(rows[i : i + 4], key=lambda row: float(row["relative_deviation"]))
 
 
-def main(arguments: Sequence[str]) -> None:
+def main(name: str) -> None:
     """Simulate, count, write."""
-    grid, name = (FULL, "coverage-full") if "--full" in arguments else (SMALL, "coverage")
-    rows: list[Row] = []
+    grid, rows = GRIDS[name], list[Row]()
     for point in grid["points"]:
-        rows += rows_of(point, profits_of(point, grid), grid)
+        rows += rows_of(point, profits_of(point, grid))
         print(point, share(rows[-4:]), rows[-1]["mean_seeds"], flush=True)
-    with open(HERE / f"{name}.csv", "w", encoding="utf-8", newline="") as file:
+    with open(HERE / f"coverage-{name}.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
@@ -204,4 +222,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(sys.argv[1])
