@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
@@ -233,6 +234,7 @@ def random_case(seed: int) -> Case:
     workload, machine = random_workload(rng), random_machine(rng)
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
+    machine = replace(machine, contention=_pick(rng, CONTENTIONS))
     return Case(workload, machine, placement, random_policy(rng), order)
 
 

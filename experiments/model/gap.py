@@ -21,7 +21,7 @@ from simmpp.engine.synchronous import DATAFLOWS, Dataflow, synchronous
 from simmpp.machine.presets import machine
 from simmpp.model.analytical import analytical, rays_of
 from simmpp.model.costs import costs_of
-from simmpp.model.measured import measured_makespan_ps
+from simmpp.model.measured import measured
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
@@ -68,7 +68,7 @@ def makespans(
     return {
         "analytical": float(getattr(paper, dataflow)[0, 0]),
         "after_runs": float(getattr(runs, dataflow)[0, 0]),
-        "measured": measured_makespan_ps(workload, MACHINE, placement, dataflow),
+        "measured": measured(workload, MACHINE, placement, dataflow).makespan_ps,
         "measured_waits": waits.makespan_ps,
         "simulated": simulated(POLICIES[dataflow]),
         "simulated_merged": simulated(PolicyParameters(dataflow)),

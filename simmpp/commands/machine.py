@@ -16,6 +16,7 @@ def machine_command(preset: str) -> None:
     from rich.table import Table
 
     from simmpp.commands.terminal import output
+    from simmpp.machine.links import LINKS, NO_CONTENTION
     from simmpp.machine.presets import load_preset
 
     chosen = load_preset(preset)
@@ -25,6 +26,11 @@ def machine_command(preset: str) -> None:
     table.add_column("source")
     for key, text in chosen.texts.items():
         table.add_row(key, text, chosen.sources[key])
+    table.add_row(
+        "contention",
+        NO_CONTENTION,
+        f"a choice, not a constant; {LINKS}: each link and port serves one message at a time",
+    )
     console = output()
     console.print(f"{chosen.name}: {chosen.description}\n", markup=False, highlight=False)
     console.print(table)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,6 +16,7 @@ from simmpp.commands.options import FiniteRange, NamedPath
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from simmpp.sweeps.settings import Settings
     from simmpp.sweeps.sweep import SweepResult
 
 POINTS_FAILED = 1
@@ -61,7 +63,8 @@ def sweep_command(
     """Simulate every combination of the values under the key sweep.
 
     Writes results.csv, results.parquet, profits.csv, timings.csv and run.json. Object dataflow is
-    run as the reference of the profits, if it is not named, and has its rows. The same command
+    run as the reference of the profits, if it is not named, and has its rows. With a tolerance,
+    seeds are added until the profits of each point are known that well. The same command
     continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
     """
     from simmpp.errors import ConfigError
@@ -94,7 +97,7 @@ def sweep_command(
             out=out,
             watcher=watcher,
         )
-    sys.exit(_conclude(result, out))
+    sys.exit(_conclude(result, config.settings, out))
 
 
 def available_cores() -> int:
@@ -104,7 +107,7 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-def _conclude(result: SweepResult, out: Path) -> int:
+def _conclude(result: SweepResult, settings: Settings, out: Path) -> int:
     """Print what came out; the exit code."""
     from simmpp.commands.terminal import notice, output
 
@@ -112,9 +115,43 @@ def _conclude(result: SweepResult, out: Path) -> int:
     failed = rows[rows["error"].notna()]
     output().print(_table(result))
     click.echo(f"\n{len(rows)} rows, {len(failed)} failed: {out / 'results.csv'}")
+    if settings.tolerance is not None:
+        for line in _reached(result, settings.tolerance, settings.max_seeds):
+            click.echo(line)
     for error, count in failed["error"].value_counts().items():
         notice(f"{count} failed: {error}")
     return POINTS_FAILED if len(failed) else 0
+
+
+def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:
+    """How many points have their profits within the tolerance, and which have not."""
+    from simmpp.sweeps.reached import missed
+
+    profits: list[dict[Any, Any]] = result.profits.to_dict("records")
+    names = [name for name in _names(result) if name != "policy"]
+    points: dict[tuple[object, ...], list[str]] = {
+        tuple(_cell(row[name]) for name in names): [] for row in profits
+    }
+    for each in missed(profits, tolerance):
+        what = f"{each.row['policy']} {each.measure.replace('_', ' ')} +- {each.half_width:.1%}"
+        points[tuple(_cell(each.row[name]) for name in names)].append(what)
+    wide = {point: told for point, told in points.items() if told}
+    fewest, largest = result.profits["n"].min(), result.profits["n"].max()
+    yield (
+        f"{len(points) - len(wide)} of {len(points)} points have both profits within "
+        f"{float(tolerance):.3g}, with {fewest} to {largest} seeds"
+    )
+    for point, told in list(wide.items())[:PROFITS_SHOWN]:
+        where = ", ".join(f"{name} {cell}" for name, cell in zip(names, point, strict=True))
+        yield f"not with max_seeds {most}: {where}: {', '.join(told)}"
+    if len(wide) > PROFITS_SHOWN:
+        yield f"... and {len(wide) - PROFITS_SHOWN} more"
+
+
+def _names(result: SweepResult) -> list[str]:
+    """The columns that name a row of profits."""
+    columns = list(result.profits.columns)
+    return [name for name in columns[: columns.index("n")] if name != "effective_fraction"]
 
 
 def _table(result: SweepResult) -> Table:
@@ -123,14 +160,12 @@ def _table(result: SweepResult) -> Table:
 
     from simmpp.sweeps.point import REFERENCE
 
-    profits = result.profits[result.profits["policy"] != REFERENCE]
-    names = list(profits.columns[: profits.columns.get_loc("n")])
-    names.remove("effective_fraction")
+    profits, names = result.profits[result.profits["policy"] != REFERENCE], _names(result)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in (*names, "time profit", "message profit"):
+    for name in (*names, "seeds", "time profit", "message profit"):
         table.add_column(name, no_wrap=True, justify="left" if name in names else "right")
     for row in profits.head(PROFITS_SHOWN).to_dict("records"):
-        shown = [_cell(row[name]) for name in names]
+        shown = [_cell(row[name]) for name in (*names, "n")]
         table.add_row(*shown, _profit(row, "time_profit"), _profit(row, "message_profit"))
     if len(profits) > PROFITS_SHOWN:
         table.add_row(f"... {len(profits) - PROFITS_SHOWN} more")

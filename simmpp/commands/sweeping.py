@@ -17,7 +17,7 @@ from simmpp.sweeps.profits import best_policy
 from simmpp.sweeps.sweep import Watcher
 
 LINES = 10
-"""Lines that a pipe gets in all."""
+"""Lines that a pipe gets in all, if all simulations are known from the start."""
 BEST_S = 2
 """Seconds between two looks for the best policy."""
 
@@ -34,6 +34,10 @@ class Progressing(Watcher):
         self.done, self.failed = self.before, 0
         if self.before:
             notice(f"{self.before} of {self.total} simulations are there from before")
+
+    def asked(self, tasks: int) -> None:
+        """There is more to count."""
+        self.total += tasks
 
     def simulated(self, outcome: Outcome) -> None:
         """Count one."""
@@ -53,22 +57,23 @@ class Progressing(Watcher):
 
 
 class Lines(Progressing):
-    """A line for each tenth of the simulations, for files and pipes."""
+    """A line whenever another tenth of the simulations is done, for files and pipes."""
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
         """Begin."""
         super().planned(plan, finished)
-        self._began_s = time.monotonic()
+        self._began_s, self._told = time.monotonic(), self.before
 
     def simulated(self, outcome: Outcome) -> None:
         """A line if that makes another tenth."""
-        before = LINES * self.done // self.total
         super().simulated(outcome)
-        if LINES * self.done // self.total > before:
-            per_task_s = (time.monotonic() - self._began_s) / (self.done - self.before)
-            left_s = per_task_s * (self.total - self.done)
-            parts = (f"{self.done} of {self.total}", f"about {left_s:.0f} s left", self.more())
-            notice(", ".join(filter(None, parts)))
+        if LINES * (self.done - self._told) < self.total and self.done < self.total:
+            return
+        self._told = self.done
+        per_task_s = (time.monotonic() - self._began_s) / (self.done - self.before)
+        left_s = per_task_s * (self.total - self.done)
+        parts = (f"{self.done} of {self.total}", f"about {left_s:.0f} s left", self.more())
+        notice(", ".join(filter(None, parts)))
 
 
 class Bars(Progressing):
@@ -97,7 +102,7 @@ class Bars(Progressing):
         super().simulated(outcome)
         if time.monotonic() - self._looked_s > BEST_S or self.done == self.total:
             self._more, self._looked_s = self.more(), time.monotonic()
-        self._bars.update(self._points, completed=self.done, more=self._more)
+        self._bars.update(self._points, completed=self.done, total=self.total, more=self._more)
 
 
 @contextmanager
@@ -108,11 +113,11 @@ def progress_of_sweep() -> Iterator[Watcher]:
         yield Lines()
         return
     bars = Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.completed:.0f} of {task.total:.0f}"),
         TimeRemainingColumn(),
-        TextColumn("{task.fields[more]}"),
+        TextColumn("{task.fields[more]}", markup=False),
         console=console,
         transient=True,
     )

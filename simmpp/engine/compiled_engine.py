@@ -1,8 +1,4 @@
-"""The fast engine: the same steps, driven by an event loop that is compiled too.
-
-Events are ordered by the same key as in the readable engine: time, then arrivals by (destination,
-source, send number), then the instants of PEs by (PE, number).
-"""
+"""The fast engine: the same steps, driven by an event loop that is compiled too."""
 
 from __future__ import annotations
 
@@ -11,30 +7,23 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.activities import SLEEP, step
+from simmpp.engine.alone import run_alone
+from simmpp.engine.event_heap import DEPARTURE, EVENT_KEY, INSTANT, pop, push
 from simmpp.engine.layout import NONE, Row, Run
 from simmpp.engine.log import note_arrival
 from simmpp.engine.memory import messages, messages_marks, outbox
+from simmpp.engine.sending import depart
 from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.engine.tables import USED
 from simmpp.errors import ModelError
 
-INSTANT = 1 << 62
-"""Rank of a PE's own instants, above all pairs of PEs."""
 EVENTS_PER_CALL = 1 << 20
 """So that progress is shown and Ctrl-C is heard."""
 FINISHED, PAUSED, FULL, STARVED = range(4)
 
-EVENT_KEY = np.dtype(
-    [
-        ("time_ps", "i8"),
-        ("rank", "i8"),  # destination * 2^31 + source, or INSTANT + PE
-        ("number", "i8"),  # the sender's send number, or the PE's instants so far
-        ("message", "i8"),  # that arrives; NONE at an instant
-    ]
-)
 LINE = np.dtype(
     [
         ("first", "i4"),  # inbox of the PE, linked through MESSAGE.chain
@@ -67,7 +56,7 @@ class CompiledRun:
 
         Raises ModelError if rays are left and nothing is scheduled.
         """
-        status = FINISHED if self.state["rays_left"] == 0 else PAUSED
+        status = FINISHED if self.state["rays_left"] == 0 or self._needs_no_events() else PAUSED
         while status in (PAUSED, FULL):
             self._make_room()
             arguments = (self.state.runs, self._heap, self._lines, self._loop, EVENTS_PER_CALL)
@@ -77,8 +66,17 @@ class CompiledRun:
         if status == STARVED:
             raise ModelError(starved(self.state))
 
+    def _needs_no_events(self) -> bool:
+        """Was nothing remote, so that the run is at its end without any event?"""
+        records = self.state["logs"] or self.state["record_tests"]
+        if records or not run_alone(self.state.runs):
+            return False
+        if self._progress is not None:
+            self._progress(0)
+        return True
+
     def _make_room(self) -> None:
-        self.state.ensure_room()
+        self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)
         needed = len(self.state.messages) + len(self._lines) + 1
         if len(self._heap) < needed:
             heap = np.zeros(needed, EVENT_KEY)
@@ -109,19 +107,21 @@ def _run(
             return FINISHED
         if _short_of_room(s):
             return FULL
-        _pop(heap, loop)
-        if message != NONE:
+        pop(heap, loop)
+        if message == NONE:
+            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
+        elif rank < INSTANT:
             _arrive(runs, heap, lines, loop, message, time_ps)
         else:
-            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
+            _let_arrive(runs, heap, loop, message, depart(runs, message))
     return PAUSED
 
 
 @njit
 def _short_of_room(s: Run) -> bool:
-    room = s.messages_n - messages_marks(s)[USED]
-    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
-    return short or (s.logs and s.n_logged >= s.log_n - 2)
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    short = s.messages_n - messages_marks(s)[USED] < most
+    return short or (s.logs and s.log_n - s.n_logged < most + 2)
 
 
 @njit
@@ -172,8 +172,10 @@ def _step(
     for i in range(s.n_sent):
         row = outbox(s)[i]
         m = messages(s)[row]
-        rank = (np.int64(m.destination) << 31) | m.source
-        _push(heap, loop, m.arrival_ps, rank, m.number, row)
+        if s.contends:
+            push(heap, loop, m.depart_ps, DEPARTURE + m.source, m.number, row)
+        else:
+            _let_arrive(runs, heap, loop, row, m.arrival_ps)
     if next_ps == SLEEP:
         line.asleep = 1
     else:
@@ -181,60 +183,17 @@ def _step(
 
 
 @njit
+def _let_arrive(
+    runs: NDArray[np.void], heap: NDArray[np.void], loop: Row, message: int, arrival_ps: int
+) -> None:
+    m = messages(runs[0])[message]
+    rank = (np.int64(m.destination) << 31) | m.source
+    push(heap, loop, arrival_ps, rank, m.number, message)
+
+
+@njit
 def _schedule_instant(
     heap: NDArray[np.void], lines: NDArray[np.void], loop: Row, me: int, time_ps: int
 ) -> None:
     lines[me].instants += 1
-    _push(heap, loop, time_ps, INSTANT + me, lines[me].instants, NONE)
-
-
-@njit
-def _before(a: Row, time_ps: int, rank: int, number: int) -> bool:
-    """Does event ``a`` come before the one with that key?"""
-    if a.time_ps != time_ps:
-        return a.time_ps < time_ps
-    if a.rank != rank:
-        return a.rank < rank
-    return a.number < number
-
-
-@njit
-def _put(heap: NDArray[np.void], at: int, event: Row) -> None:
-    heap[at].time_ps, heap[at].rank = event.time_ps, event.rank
-    heap[at].number, heap[at].message = event.number, event.message
-
-
-@njit
-def _push(
-    heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int, message: int
-) -> None:
-    """Add an event to the binary heap."""
-    at = loop.size
-    loop.size += 1
-    while at > 0:
-        parent = (at - 1) // 2
-        if _before(heap[parent], time_ps, rank, number):
-            break
-        _put(heap, at, heap[parent])
-        at = parent
-    heap[at].time_ps, heap[at].rank = time_ps, rank
-    heap[at].number, heap[at].message = number, message
-
-
-@njit
-def _pop(heap: NDArray[np.void], loop: Row) -> None:
-    """Remove the first event of the binary heap."""
-    loop.size -= 1
-    last = heap[loop.size]
-    at, child = 0, 1
-    while child < loop.size:
-        right = child + 1
-        if right < loop.size:
-            r = heap[right]
-            if _before(r, heap[child].time_ps, heap[child].rank, heap[child].number):
-                child = right
-        if not _before(heap[child], last.time_ps, last.rank, last.number):
-            break
-        _put(heap, at, heap[child])
-        at, child = child, 2 * child + 1
-    _put(heap, at, last)
+    push(heap, loop, time_ps, INSTANT + me, lines[me].instants, NONE)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
+from simmpp.engine.hops import note_hops
 from simmpp.engine.layout import Run
-from simmpp.engine.memory import object_bytes, pes, rays, recent, want_rows, wants
+from simmpp.engine.memory import object_bytes, owners, pes, rays, recent, want_rows, wants
 from simmpp.engine.ready import make_ready
 from simmpp.engine.tables import append, find, first, unlink
 from simmpp.engine.waiting import drop_if_idle, set_sendable
@@ -41,6 +42,10 @@ def _release(s: Run, me: int, row: int) -> None:
     for _ in range(n - 1):
         tail = rays(s)[tail].next
         rays(s)[tail].granted = 1
+    if s.record_hops:
+        owner = owners(s)[want.key % s.n_objects]
+        note_hops(s, head, n, me, owner)
+        note_hops(s, head, n, owner, me)
     want.first = rays(s)[tail].next
     want.n -= n
     want.pinned += n

@@ -7,16 +7,16 @@ from dataclasses import astuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.arguments import MOST_COUNT, require_whole, require_word
 from simmpp.errors import ConfigError, WorkloadError
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import Machine
+from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import Workload
 
 
-def check_fit(
-    workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
-) -> None:
+def check_fit(workload: Workload, machine: Machine, placement: Placement) -> None:
     """Raise WorkloadError or ConfigError for what a run would trip over.
 
     Only what the engines rely on, in milliseconds; files are checked whole when they are read.
@@ -24,10 +24,6 @@ def check_fit(
     _check_workload(workload)
     _check_machine(machine)
     _check_placement(workload, machine, placement)
-    if min(policy.batch, policy.ask_at_least) < 1:
-        raise ConfigError(f"policy {policy.title}: expected batch and ask_at_least of at least 1")
-    if policy.min_load < 0 or (policy.refresh_ps or 0) < 0:
-        raise ConfigError(f"policy {policy.title}: expected no negative min_load or refresh")
 
 
 def _check_workload(workload: Workload) -> None:
@@ -51,9 +47,10 @@ def _check_machine(machine: Machine) -> None:
         value = numbers.pop()
         if isinstance(value, tuple):
             numbers.extend(value)
-        elif isinstance(value, int) and value < 0:
-            raise ConfigError(f"machine {machine.name}: value {value}: expected no negative cost")
-    if min(machine.quantum, *machine.shape) < 1:
+        elif not isinstance(value, str | dict):
+            require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
+    require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
+    if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
 
 

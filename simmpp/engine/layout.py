@@ -32,8 +32,8 @@ PE = np.dtype(
         ("held_bytes", "i8"),  # resident and fetched objects
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
+        ("peak_object_bytes", "i8"),  # of held_bytes
         ("n_transient", "i4"),
-        ("open_event", "i8"),  # row of the activity under way in the event log, or NONE
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
     ],
     align=True,
@@ -97,17 +97,21 @@ COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
 
 EVENT = np.dtype(
     [
-        ("time_ps", "i8"),  # when a message arrives, or an activity begins
-        ("end_ps", "i8"),  # when the activity ends, dispatch included; of an arrival: time_ps
-        ("pe", "i4"),  # destination of an arrival
-        ("event", "i4"),  # ARRIVAL, RECEIVE or COMPUTE
-        ("source", "i4"),  # sender of the message; -1 for COMPUTE
-        ("kind", "i4"),  # kind of the message; -1 for COMPUTE
-        ("number", "i8"),  # the sender's send number; -1 for COMPUTE
+        ("time_ps", "i8"),  # when a message arrives, or the PE begins
+        ("end_ps", "i8"),  # when the PE is done, a message sent departs; of an arrival: time_ps
+        ("number", "i8"),  # the sender's send number; NONE if there is no message or it never left
         ("payload_bytes", "i8"),
         ("tests", "i8"),
+        ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
+        ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
+        ("rays", "i4"),  # in the message; finished by a COMPUTE
+        ("load", "i4"),  # of the PE, when it is done
+        ("ready", "i4"),  # rays of the load that are ready then; the others wait
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("kind", "i2"),  # of the message; NONE without one
     ]
 )
+"""One row of the event log, a cache line."""
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 
@@ -157,6 +161,8 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "sort_items": I8,
     "tested_rays": I4,
     "tested_objects": I4,
+    "free_ps": I8,  # from when on each link and port is free; empty without contention
+    "ray_hops": I4,
     "log": EVENT,
 }
 """Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
@@ -173,6 +179,7 @@ PARAMETERS = (
     "latency_ps",
     "hop_latency_ps",
     "bytes_per_s",  # the smaller of link and injection bandwidth
+    "contends",  # links and ports serve one message at a time
     "header_bytes",
     "request_bytes",
     "ray_bytes",
@@ -195,6 +202,7 @@ PARAMETERS = (
     "refresh_ps",  # NONE: no refresh
     "merge_requests",
     "record_tests",
+    "record_hops",
     "logs",
 )
 COUNTERS = (
@@ -223,5 +231,5 @@ RUN = np.dtype(
 PIGGYBACK, EXACT, NO_INFO = range(3)
 LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
 BEGIN, DISPATCH = range(2)
-ARRIVAL, RECEIVE, COMPUTE = range(3)
+ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
 PACK, UNPACK = 0, 4

@@ -213,6 +213,18 @@ def tested_objects(s: Run) -> Any:
 
 
 @njit
+def free_ps(s: Run) -> Any:
+    """(8 nb,) int64, or empty: see ``machine.links``."""
+    return carray(_pointer(s.free_ps_at), s.free_ps_n, I8)
+
+
+@njit
+def ray_hops(s: Run) -> Any:
+    """(n,) int32, or empty."""
+    return carray(_pointer(s.ray_hops_at), s.ray_hops_n, I4)
+
+
+@njit
 def log(s: Run) -> Any:
     """(capacity,) EVENT, or empty."""
     return carray(_pointer(s.log_at), s.log_n, EVENT)

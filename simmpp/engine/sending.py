@@ -1,13 +1,18 @@
-"""Packing a message, and the time it takes to arrive without contention."""
+"""Packing a message, and when it arrives, alone or behind others."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from simmpp.compiled import njit
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, PACK, Run
+from simmpp.engine.log import note_send
 from simmpp.engine.memory import (
     copy_costs,
+    free_ps,
     messages,
     messages_marks,
     outbox,
@@ -17,9 +22,11 @@ from simmpp.engine.memory import (
 )
 from simmpp.engine.tables import take
 from simmpp.engine.waiting import note_exchange, partner_of
+from simmpp.machine.links import book
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.machine.network import transfer_ps
 from simmpp.machine.torus import hops
+from simmpp.machine.work import CLOCK_LIMIT_PS
 
 
 @njit
@@ -53,7 +60,8 @@ def send(
     m.object, m.first, m.last, m.n = wanted, first, last, n
     m.payload_bytes, m.load = payload_bytes, pe.load
     m.depart_ps, m.number = depart_ps, pe.messages_sent
-    m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
+    if s.contends == 0:
+        m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
     pe.messages_sent += 1
     sent_by_kind(s)[kind] += 1
     s.bytes_sent += payload_bytes + s.header_bytes
@@ -62,6 +70,8 @@ def send(
         partner_rows(s)[partner].sent_ps = depart_ps
         if kind in (OBJECT, RAYS):
             note_exchange(s, me, partner)
+    if s.logs:
+        note_send(s, me, row, now_ps)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return depart_ps
@@ -76,3 +86,20 @@ def flight_ps(s: Run, source: int, destination: int, payload_bytes: int) -> int:
         + n_hops * s.hop_latency_ps
         + transfer_ps(payload_bytes + s.header_bytes, s.bytes_per_s)
     )
+
+
+@njit
+def depart(runs: NDArray[np.void], message: int) -> int:
+    """A message enters a network with contention; returns its arrival, after all booked before it.
+
+    No time in ``free_ps`` exceeds an arrival, so none can wrap if no arrival exceeds the clock.
+    """
+    s: Run = runs[0]
+    m = messages(s)[message]
+    busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
+    torus, ways = (s.x, s.y, s.z), free_ps(s)
+    times = (m.depart_ps, s.latency_ps, s.hop_latency_ps, busy_ps)
+    m.arrival_ps = book(ways, torus, m.source, m.destination, *times)
+    if m.arrival_ps > CLOCK_LIMIT_PS:
+        raise OverflowError("the clock")
+    return m.arrival_ps

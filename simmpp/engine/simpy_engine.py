@@ -1,9 +1,10 @@
 """The readable engine: PEs are SimPy processes, messages are events.
 
-It stays lean so that whole pictures can be run: one event per message, scheduled at its arrival,
-inboxes are plain deques, and a sleeping PE has one event to wake it. Ties in time are ordered by
-the priority of an event, a whole number made of (0, destination, source, send number) for arrivals
-and of (1, PE, number) for the PEs' own instants.
+It stays lean so that whole pictures can be run: one event per message, scheduled at its arrival
+(with contention also one at its departure), inboxes are plain deques, and a sleeping PE has one
+event to wake it. Ties in time are ordered by the priority of an event, a whole number made of (0,
+destination, source, send number) for arrivals, of (1, PE, number) for the PEs' own instants and of
+(2, source, send number) for departures.
 """
 
 from __future__ import annotations
@@ -18,13 +19,14 @@ from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.entry import entry_point
 from simmpp.engine.layout import BEGIN, MESSAGE, NONE
 from simmpp.engine.log import note_arrival
+from simmpp.engine.sending import depart
 from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
-_ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
+_DEPART_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     list(MESSAGE.names or ()).index(name)
-    for name in ("arrival_ps", "number", "source", "destination")
+    for name in ("depart_ps", "arrival_ps", "number", "source", "destination")
 )
 _FIRST = -1  # priority before all others of its instant
 _PROGRESS_EVERY = 4096
@@ -38,6 +40,7 @@ class SimpyRun:
         self.arrivals = 0
         self._progress = progress
         self._note_arrival = entry_point(note_arrival, state.runs, 0)
+        self._depart = entry_point(depart, state.runs, 0)
         self._step = entry_point(step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
@@ -46,6 +49,7 @@ class SimpyRun:
         self._end = _happened(self._environment)
         self._ending = False
         self._logs = bool(state["logs"])
+        self._contends = bool(state["contends"])
 
     def run(self) -> None:
         """Run until no ray is left.
@@ -72,8 +76,8 @@ class SimpyRun:
         phase = BEGIN
         yield self._instant(me, 0)
         while True:
-            state.ensure_room()
             now_ps = environment.now
+            state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = step(runs, me, phase, message, now_ps)
             phase, consumed, n_sent = state.report.tolist()
@@ -101,15 +105,33 @@ class SimpyRun:
         self._environment.schedule(event, priority, delay_ps)
 
     def _carry(self, n_sent: int) -> None:
-        """Messages of the outbox travel: each arrives as one event."""
-        state, now_ps = self.state, self._environment.now
-        for row in state.arrays["outbox"][:n_sent].tolist():
-            message = state.messages[row].item()
-            destination = message[_DESTINATION]
-            arrival = _happened(self._environment, (destination, row))
-            arrival.callbacks.append(self._deliver)
-            priority = (destination << 32 | message[_SOURCE]) << 64 | message[_NUMBER]
-            self._environment.schedule(arrival, priority, message[_ARRIVAL_PS] - now_ps)
+        """Messages of the outbox travel; with contention they book their way as they depart."""
+        for row in self.state.arrays["outbox"][:n_sent].tolist():
+            if self._contends:
+                self._let_depart(row)
+            else:
+                self._let_arrive(row)
+
+    def _let_depart(self, row: int) -> None:
+        message = self.state.messages[row].item()
+        departure = _happened(self._environment, row)
+        departure.callbacks.append(self._enter_network)
+        priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
+        delay_ps = message[_DEPART_PS] - self._environment.now
+        self._environment.schedule(departure, priority, delay_ps)
+
+    def _enter_network(self, departure: Event) -> None:
+        self._depart(self.state.runs, departure.value)
+        self._let_arrive(departure.value)
+
+    def _let_arrive(self, row: int) -> None:
+        message = self.state.messages[row].item()
+        destination = message[_DESTINATION]
+        arrival = _happened(self._environment, (destination, row))
+        arrival.callbacks.append(self._deliver)
+        priority = (destination << 32 | message[_SOURCE]) << 64 | message[_NUMBER]
+        delay_ps = message[_ARRIVAL_PS] - self._environment.now
+        self._environment.schedule(arrival, priority, delay_ps)
 
     def _deliver(self, arrival: Event) -> None:
         """A message arrives: it lies in the inbox, and wakes its PE if that sleeps."""
@@ -117,7 +139,7 @@ class SimpyRun:
         self.arrivals += 1
         self._inboxes[destination].append(row)
         if self._logs:
-            self.state.ensure_room()
+            self.state.ensure_room(self._environment.now)
             self._note_arrival(self.state.runs, row)
         asleep = self._asleep[destination]
         if asleep is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simmpp.compiled import njit
+from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, Run
 from simmpp.engine.memory import (
     exchanged,

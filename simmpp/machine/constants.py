@@ -7,8 +7,9 @@ from typing import Annotated
 from pydantic import Field
 
 from simmpp.errors import ConfigError
+from simmpp.machine.links import CONTENTIONS, NO_CONTENTION
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.strict import Bandwidth, Expect, Size, Strict, Time, integer, parsed_by
+from simmpp.strict import Bandwidth, Expect, Size, Strict, Time, integer, one_of, parsed_by
 from simmpp.units import picoseconds, shown
 
 MOST_PROCESSORS = 65536
@@ -100,6 +101,10 @@ class Constants(Strict):
     injection_bandwidth: Bandwidth | None = Field(
         default=None, description="between a PE and its router"
     )
+    contention: Annotated[str, *one_of(*CONTENTIONS)] = Field(
+        default=NO_CONTENTION,
+        description="what messages wait for: nothing, or links and ports that serve one at a time",
+    )
     test: Annotated[TestConstants, parsed_by(long_test)] = Field(
         default=TestConstants(),
         description="one ray-object intersection: one time, or by kind of primitive",
@@ -110,7 +115,7 @@ class Constants(Strict):
     )
 
     def flat(self) -> dict[str, int]:
-        """The constants that are given, by dotted key (``pack.rays.bandwidth``), without shape.
+        """The constants that are given, by dotted key (``pack.rays.bandwidth``): the numbers.
 
         What is given for all kinds of messages appears under each kind.
         """

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.machine.links import NO_CONTENTION
 from simmpp.units import UNLIMITED as UNLIMITED
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
@@ -76,6 +77,8 @@ class Machine:
     """Set-up and shading of one ray."""
     quantum: int
     """Tests that a PE computes at most before it looks into its inbox."""
+    contention: str = NO_CONTENTION
+    """What messages wait for: "none", or "links" (see ``machine.links``)."""
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     """Where each constant comes from, by its dotted key; values without a document say ESTIMATE."""
 

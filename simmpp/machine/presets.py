@@ -8,6 +8,7 @@ from functools import cache
 from importlib.resources import as_file, files
 from math import prod
 
+from simmpp.arguments import require_whole
 from simmpp.errors import ConfigError
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.machine import CopyCost, Machine, TestCost
@@ -116,6 +117,7 @@ def machine(
         torus_shape(processors, shape or overrides.shape),
         chosen.constants.flat() | changed,
         sources | dict.fromkeys(changed, OVERRIDDEN),
+        overrides.contention,
     )
 
 
@@ -131,16 +133,16 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
 
     Raises ConfigError otherwise.
     """
-    if not 1 <= processors <= MOST_PROCESSORS:
-        expected = f"an integer from 1 to {MOST_PROCESSORS}"
-        raise ConfigError(f"processors: value {shown(processors)}: expected {expected}")
+    require_whole("processors", processors, 1, MOST_PROCESSORS)
     if shape is not None and prod(shape) != processors:
         expected = f"three integers whose product is processors = {processors}"
         raise ConfigError(f"value {list(shape)}: expected {expected}")
     return shape or default_shape(processors)
 
 
-def _machine(name: str, shape: Shape, value: dict[str, int], sources: dict[str, str]) -> Machine:
+def _machine(
+    name: str, shape: Shape, value: dict[str, int], sources: dict[str, str], contention: str
+) -> Machine:
     def copies(key: str) -> tuple[CopyCost, CopyCost, CopyCost, CopyCost]:
         request, object_, rays, load = (
             CopyCost(value[f"{key}.{kind}.fixed"], value[f"{key}.{kind}.bandwidth"])
@@ -172,5 +174,6 @@ def _machine(name: str, shape: Shape, value: dict[str, int], sources: dict[str, 
         ),
         ray_ps=value["ray"],
         quantum=value["quantum"],
+        contention=contention,
         sources=sources,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,17 +20,27 @@ from simmpp.workload.workload import Workload
 Ints = NDArray[np.int64]
 
 
-def measured_makespan_ps(
-    workload: Workload, machine: Machine, placement: Placement, dataflow: Dataflow
-) -> int:
-    """The makespan of method ``analytical-measured``, to the nearest picosecond.
+class Measured(NamedTuple):
+    """What the formulas say of one dataflow on a placement."""
 
-    n and r are counted by moving every ray step by step. The costs of a test and of an object are
-    the workload's means.
+    makespan_ps: int
+    """To the nearest picosecond."""
+    lacking: int
+    """The sum of all r: rays that lacked the object of a test."""
+    steps: int
+    """K."""
+
+
+def measured(
+    workload: Workload, machine: Machine, placement: Placement, dataflow: Dataflow
+) -> Measured:
+    """The formulas fed with n and r counted by moving every ray step by step.
+
+    The costs of a test and of an object are the workload's means.
     """
     counts = synchronous(workload, machine, placement, dataflow).counts
     times = step_times_ps(counts, dataflow, machine, costs_of(machine, workload))
-    return round(float(makespan(times)))
+    return Measured(round(float(makespan(times))), int(counts.rays.sum()), len(counts.tests))
 
 
 def step_times_ps(

@@ -11,6 +11,9 @@ from simmpp.streams import generator
 
 MORTON_BITS = 21
 """Bits a coordinate is cut to, so that three of them interleave into 63."""
+SAME_LENGTH = 2.0**-30
+"""Axes are as long as each other if they differ by at most this share of the scene: by a few steps
+of the grid that traced centroids are rounded to."""
 
 
 def owners(
@@ -35,12 +38,13 @@ def owners(
 
 
 def _bisection(centroids: NDArray[np.float64], processors: int) -> NDArray[np.int32]:
-    """Recursive bisection of space, across the longest axis of the centroids.
+    """Recursive bisection of space, across the longest axis of the centroids, the first of equals.
 
     p PEs are split floor(p / 2) : rest, and their n objects in that proportion, the lower part
     rounded down: floor(n / 2) : rest where p is even.
     """
     part_of = np.zeros(len(centroids), np.int32)
+    slack = SAME_LENGTH * float(np.ptp(centroids, axis=0).max()) if len(centroids) else 0.0
     pending = [(np.arange(len(centroids)), 0, processors)]
     while pending:
         ids, first_pe, n_pes = pending.pop()
@@ -50,7 +54,8 @@ def _bisection(centroids: NDArray[np.float64], processors: int) -> NDArray[np.in
         left_pes = n_pes // 2
         n_left = len(ids) * left_pes // n_pes
         points = centroids[ids]
-        axis = int(np.argmax(np.ptp(points, axis=0)))  # the first of equals: x < y < z
+        spread = np.ptp(points, axis=0)
+        axis = int(np.argmax(spread >= spread.max() - slack))
         order = ids[np.lexsort((ids, points[:, axis]))]
         pending.append((np.sort(order[:n_left]), first_pe, left_pes))
         pending.append((np.sort(order[n_left:]), first_pe + left_pes, n_pes - left_pes))

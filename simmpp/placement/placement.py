@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.arguments import require_share, require_whole, require_word
+
 Owners = Literal["bisection", "morton", "round_robin", "random"]
 Residents = Literal["random", "nearest", "hot"]
 Pixels = Literal["blocks", "tiles", "interleaved", "random"]
+
+MOST_BYTES = 2**62
+"""Sums of sizes are int64."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +31,13 @@ class Memory:
     transient: int = 0
     """Room for that many fetched objects besides the resident ones (least recently used leaves)."""
 
+    def __post_init__(self) -> None:
+        require_share("fraction", self.fraction)
+        if self.bytes is not None:
+            require_whole("bytes", self.bytes, 0, MOST_BYTES)
+        require_whole("transient", self.transient, 0)
+        require_word("residents", self.residents, get_args(Residents))
+
 
 @dataclass(frozen=True)
 class PlacementRules:
@@ -33,6 +45,10 @@ class PlacementRules:
 
     owners: Owners = "bisection"
     pixels: Pixels = "blocks"
+
+    def __post_init__(self) -> None:
+        require_word("owners", self.owners, get_args(Owners))
+        require_word("pixels", self.pixels, get_args(Pixels))
 
 
 @dataclass(frozen=True, eq=False)

@@ -87,4 +87,5 @@ def _nearest(centroids: NDArray[np.float64], owners: Ids, pe: int) -> Ids:
     low, high = own.min(axis=0), own.max(axis=0)
     points = centroids[others]
     outside = np.maximum(np.maximum(low - points, points - high), 0.0)
+    outside = np.ldexp(outside, -np.frexp(outside.max(initial=0.0))[1])  # squares that fit
     return others[np.lexsort((others, (outside**2).sum(axis=1)))]

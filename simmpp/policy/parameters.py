@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, get_args
+
+from simmpp.arguments import MOST_COUNT, require_whole, require_word
+from simmpp.errors import ConfigError
+from simmpp.units import shown
 
 LoadInfo = Literal["piggyback", "exact", "none"]
+
+MOST_REFRESH_PS = 2**62
+"""The clock's limit: added to a time, it still fits int64."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +37,17 @@ class PolicyParameters:
     whose send rule reads no load ignore it, as they ignore load_info."""
     merge_requests: bool = True
     """One request per missing object in flight; False sends one request per waiting ray."""
+
+    def __post_init__(self) -> None:
+        require_whole("batch", self.batch, 1)
+        require_whole("ask_at_least", self.ask_at_least, 1)
+        require_word("load_info", self.load_info, get_args(LoadInfo))
+        if self.refresh_ps is not None:
+            require_whole("refresh_ps", self.refresh_ps, 0, MOST_REFRESH_PS)
+        least = self.min_load
+        if not isinstance(least, int | Fraction) or not 0 <= least <= MOST_COUNT:
+            expected = f"a Fraction or an integer from 0 to {MOST_COUNT}"
+            raise ConfigError(f"min_load: value {shown(least)}: expected {expected}")
 
     @property
     def title(self) -> str:

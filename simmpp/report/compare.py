@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from simmpp.sweeps.rows import NUMBERS
+from simmpp.sweeps.columns import NUMBERS
 
 Row = Mapping[str, str]
 """A line of a CSV file, cells as they are written."""
 
-EXACT = ("method", "effective_fraction", *NUMBERS, "error")
+EXACT = ("effective_fraction", *NUMBERS, "error")
 """Columns of ``results.csv`` that must be equal unless tolerances are given."""
 PROFITS = ("time_profit", "message_profit", "speedup", "efficiency")
 """Columns of ``profits.csv`` that a tolerance may be given for."""

@@ -15,7 +15,7 @@ from simmpp.errors import ConfigError
 from simmpp.model.analytical import Makespans, Rays, analytical, grouped, rays_of
 from simmpp.model.border import FRACTIONS, OBJECT, PROCESSORS, RAY, TIE, winners
 from simmpp.model.costs import Costs, costs_of
-from simmpp.model.measured import measured_makespan_ps
+from simmpp.model.measured import measured
 from simmpp.placement.place import place
 from simmpp.sweeps.axes import axes_of
 from simmpp.sweeps.config import Config, point_at
@@ -120,8 +120,8 @@ def _measured(config: Config, workload: Workload, grid: Grid) -> Makespans:
             seed = config.settings.seeds[0]
             placement = place(workload, nb, memory, config.placement_rules, seed)
             for which, dataflow in enumerate(DATAFLOWS):
-                makespan_ps = measured_makespan_ps(workload, machine, placement, dataflow)
-                times[which, row, column] = makespan_ps
+                found = measured(workload, machine, placement, dataflow)
+                times[which, row, column] = found.makespan_ps
     fractions = np.array([float(x) for x in grid.fractions])
     return Makespans(np.array(grid.processors), fractions, times[0], times[1])
 

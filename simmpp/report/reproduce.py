@@ -17,12 +17,13 @@ from simmpp.report.modelled import reproduce_figure2
 from simmpp.report.panels import draw
 from simmpp.report.values import Evidence
 from simmpp.report.verdict import COLUMNS, Verdict
+from simmpp.sweeps.columns import result_columns
 from simmpp.sweeps.config import Config, load_config
-from simmpp.sweeps.crew import crew_for
+from simmpp.sweeps.frontier import Frontier
+from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.provenance import all_versions, result_versions
-from simmpp.sweeps.rows import result_columns
 from simmpp.sweeps.sweep import Watcher, run_pending
 from simmpp.sweeps.tables import Row, write_csv, write_text
 from simmpp.sweeps.workloads import workload_of
@@ -65,15 +66,15 @@ def reproduce(
     Raises ConfigError if the folder holds results of other versions.
     """
     overrides = _overrides(seeds, resolution)
-    plans = {name: plan(_load(name, overrides)) for name in EXPERIMENTS}
+    plans = {name: plan(load_experiment(name, overrides)) for name in EXPERIMENTS}
     out.mkdir(parents=True, exist_ok=True)
     everything = _together(plans)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
         pending = sum(not journal.finished(task.key) for task in everything.tasks)
         with closing(crew_for(max(1, min(workers, pending)), None)) as crew:
-            run_pending(everything, journal, crew, None, watcher or Watcher())
+            run_pending(Frontier(everything, journal), journal, crew, None, watcher or Watcher())
         rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
-        model = _load(MODEL, overrides)
+        model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)
     return _report(rows, verdicts, overrides, out)
 
@@ -84,7 +85,8 @@ def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
     return tuple(chosen)
 
 
-def _load(name: str, overrides: Sequence[str]) -> Config:
+def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
+    """The configuration of an experiment."""
     with as_file(_FOLDER / f"{name}.yaml") as path:
         return load_config(path, overrides)
 

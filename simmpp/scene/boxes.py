@@ -8,6 +8,9 @@ import numpy as np
 
 from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, SceneObject, Sphere
 
+COORDINATES: Floats = np.zeros(3)
+"""The origin of the scene's own coordinates."""
+
 
 def box(item: SceneObject) -> Floats:
     """Exact bounds of an object: (2, 3) float64, low and high corner."""
@@ -15,18 +18,21 @@ def box(item: SceneObject) -> Floats:
     return bounds
 
 
-def boxes(items: Sequence[SceneObject]) -> Floats:
-    """Exact bounds of objects: (n, 2, 3) float64, low and high corners."""
+def boxes(items: Sequence[SceneObject], origin: Floats = COORDINATES) -> Floats:
+    """Bounds of objects, seen from ``origin`` (3,): (n, 2, 3) float64, low and high corners.
+
+    An offset of everything, the origin too, leaves them as they are, if the coordinates bear it.
+    """
     bounds = np.empty((len(items), 2, 3))
     spheres = [i for i, item in enumerate(items) if isinstance(item, Sphere)]
     cones = [i for i, item in enumerate(items) if isinstance(item, Cone)]
-    bounds[spheres] = _sphere_boxes([items[i] for i in spheres])
-    bounds[cones] = _cone_boxes([items[i] for i in cones])
+    bounds[spheres] = _sphere_boxes([items[i] for i in spheres], origin)
+    bounds[cones] = _cone_boxes([items[i] for i in cones], origin)
     flat = [i for i, item in enumerate(items) if isinstance(item, Polygon | MeshPart)]
     if flat:
         corners = [_corners(items[i]) for i in flat]
         starts = np.cumsum([0] + [len(part) for part in corners[:-1]])
-        points = np.concatenate(corners)
+        points = np.concatenate(corners) - origin
         bounds[flat, 0] = np.minimum.reduceat(points, starts)
         bounds[flat, 1] = np.maximum.reduceat(points, starts)
     return bounds
@@ -46,14 +52,14 @@ def _corners(item: SceneObject) -> Floats:
     raise TypeError(f"no corners: {item.kind}")
 
 
-def _sphere_boxes(items: Sequence[SceneObject]) -> Floats:
+def _sphere_boxes(items: Sequence[SceneObject], origin: Floats) -> Floats:
     rows = [(*s.centre, s.radius) for s in items if isinstance(s, Sphere)]
     values = np.array(rows).reshape(-1, 4)
-    centre, radius = values[:, :3], np.abs(values[:, 3:])
+    centre, radius = values[:, :3] - origin, np.abs(values[:, 3:])
     return np.stack([centre - radius, centre + radius], axis=1)
 
 
-def _cone_boxes(items: Sequence[SceneObject]) -> Floats:
+def _cone_boxes(items: Sequence[SceneObject], origin: Floats) -> Floats:
     """Bounds of two discs each: a disc of radius r reaches r sqrt(1 - a_k^2) along axis k.
 
     1 - a_k^2 is taken from the other two components, so that a disc across an axis has no
@@ -62,6 +68,7 @@ def _cone_boxes(items: Sequence[SceneObject]) -> Floats:
     rows = [(*c.base, c.base_radius, *c.apex, c.apex_radius) for c in items if isinstance(c, Cone)]
     values = np.array(rows).reshape(-1, 8)
     base, base_radius, apex, apex_radius = np.split(values, (3, 4, 7), axis=1)
+    base, apex = base - origin, apex - origin
     along = (apex - base) ** 2
     across = along[:, [1, 0, 0]] + along[:, [2, 2, 1]]
     length = along.sum(axis=1, keepdims=True)

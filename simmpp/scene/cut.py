@@ -102,7 +102,8 @@ def _clusters(vertices: Floats, faces: Indices, largest: int) -> list[Indices]:
     Ties between axes: x before y before z; between triangles: their order. Counts split
     floor(n / 2) : rest.
     """
-    centroids = vertices[faces].sum(axis=1) / 3
+    # From the least coordinates: where the mesh lies leaves the roundings as they are.
+    centroids = (vertices - vertices.min(axis=0))[faces].sum(axis=1) / 3
     done: list[Indices] = []
     waiting = [np.arange(len(faces))]
     while waiting:

@@ -61,8 +61,12 @@ def polygon_faces(vertices: Floats) -> Faces:
 
 
 def _dominant_plane(vertices: Floats) -> list[Pair]:
-    """The vertices seen along the axis in which the polygon's area is largest."""
-    points = (vertices - vertices[0]).tolist()
+    """The vertices seen along the axis in which the polygon's area is largest.
+
+    From the first vertex and in a power of two near their extent: neither place nor unit counts.
+    """
+    spokes = vertices - vertices[0]
+    points = np.ldexp(spokes, -np.frexp(np.abs(spokes).max())[1]).tolist()
     x = y = z = 0.0
     for (ax, ay, az), (bx, by, bz) in pairwise([*points, points[0]]):
         x += ay * bz - az * by

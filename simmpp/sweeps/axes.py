@@ -13,7 +13,7 @@ from simmpp.units import shown
 POINTS = "points"
 """The axis of named points; also the name of their column, less the plural."""
 NAME = "name"
-UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "engine", "check")
+UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "check")
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""
@@ -46,7 +46,7 @@ def axes_of(sweep: Mapping[str, Sequence[object]]) -> dict[str, Axis]:
 
 def _refuse_twice(axes: Iterable[Axis]) -> None:
     """Raise ConfigError for what is set under two keys, such as memory and memory.fraction."""
-    setting = [_keys_within(axis, key) for axis in axes for key in _keys(axis)]
+    setting = [_keys_within(axis, key) for axis in axes for key in keys_of(axis)]
     for one, other in combinations(setting, 2):
         for key in one:
             if key in other:
@@ -56,7 +56,7 @@ def _refuse_twice(axes: Iterable[Axis]) -> None:
                 raise ConfigError(f"expected {a} or {b}, got both")
 
 
-def _keys(axis: Axis) -> list[str]:
+def keys_of(axis: Axis) -> list[str]:
     """Every key that an axis names, once."""
     return list(dict.fromkeys(key for choice in axis for key in choice.assignments))
 

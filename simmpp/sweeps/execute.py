@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 
 from simmpp.errors import ConfigError
@@ -16,13 +16,15 @@ from simmpp.sweeps.worker import run_task
 WORKER_DIED = "the worker died (out of memory?)"
 
 
-def outcomes(tasks: Iterable[Task], crew: Crew, timeout_s: float | None) -> Iterator[Outcome]:
+def outcomes(waiting: deque[Task], crew: Crew, timeout_s: float | None) -> Iterator[Outcome]:
     """The outcome of each task, in the order in which they are finished.
+
+    Tasks are taken from the left; whoever gets an outcome may add further ones on the right.
 
     When a worker dies, those in flight are run again one at a time, so that the one at fault is
     found and only that one fails.
     """
-    waiting, suspects = deque(tasks), deque[Task]()
+    suspects = deque[Task]()
     flying: dict[Future[Outcome], Task] = {}
     while waiting or suspects or flying:
         alone = bool(suspects)

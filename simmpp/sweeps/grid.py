@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.sweeps.axes import axes_of
 from simmpp.sweeps.config import Config, described, point_at
 from simmpp.sweeps.point import REFERENCE
+from simmpp.sweeps.seeding import first_seeds
+from simmpp.units import counted
 
+MOST_POINTS = 1_000_000
+"""Combinations of values and seeds of one sweep: a day's work at ten a second."""
 OWN_COLUMNS = ("scene", "processors", "memory.fraction", "policy", "method")
 """Keys that have a column in every table of rows, swept or not."""
 
@@ -21,24 +26,43 @@ Value = int | float | str
 
 
 @dataclass(frozen=True, eq=False)
-class GridPoint:
-    """One policy at one combination of the axes, with one seed."""
+class Comparison:
+    """Policies at one combination of the axes; all of them are run with the same seeds."""
 
     config: Config
-    policy: PolicyParameters
-    seed: int
     swept: Mapping[str, Value]
     """Value of each further column."""
+    policies: Mapping[str, PolicyParameters]
+    """By title, without the reference unless it is named."""
+
+    @property
+    def with_reference(self) -> list[PolicyParameters]:
+        """What profits are measured against comes first, named or not."""
+        reference = self.policies.get(REFERENCE, PolicyParameters(REFERENCE))
+        return [reference, *(each for title, each in self.policies.items() if title != REFERENCE)]
+
+    def points(self, seeds: Iterable[int]) -> list[GridPoint]:
+        """Every policy with each of these seeds."""
+        return [GridPoint(self, policy, seed) for seed in seeds for policy in self.with_reference]
 
 
 @dataclass(frozen=True, eq=False)
-class _Setting:
-    """What the policies of one comparison share."""
+class GridPoint:
+    """One policy at one combination of the axes, with one seed."""
 
-    config: Config
-    swept: Mapping[str, Value]
-    policies: dict[str, PolicyParameters]
-    """By title."""
+    comparison: Comparison
+    policy: PolicyParameters
+    seed: int
+
+    @property
+    def config(self) -> Config:
+        """The configuration of that combination."""
+        return self.comparison.config
+
+    @property
+    def swept(self) -> Mapping[str, Value]:
+        """Value of each further column."""
+        return self.comparison.swept
 
 
 def further_columns(config: Config) -> tuple[str, ...]:
@@ -51,29 +75,37 @@ def further_columns(config: Config) -> tuple[str, ...]:
 def grid(config: Config) -> list[GridPoint]:
     """All points, policies with object dataflow as their reference, in the order of the axes.
 
+    With a tolerance these are the points that a sweep begins with.
     Raises ConfigError for values that do not go together, and for policies that are not equal but
-    would have equal rows.
+    would have equal rows, or for more than MOST_POINTS.
     """
-    return [
-        GridPoint(setting.config, policy, seed, setting.swept)
-        for setting in _settings(config)
-        for seed in config.settings.seeds
-        for policy in _with_reference(setting.policies)
-    ]
+    seeds = first_seeds(config.settings)
+    _require_feasible(config, len(seeds))
+    return [point for each in comparisons(config) for point in each.points(seeds)]
 
 
-def _settings(config: Config) -> list[_Setting]:
+def _require_feasible(config: Config, n_seeds: int) -> None:
+    """Count before anything is made of it: four axes of a thousand values are easily written."""
+    n_combinations = prod(map(len, axes_of(config.settings.sweep).values()))
+    if n_combinations * n_seeds > MOST_POINTS:
+        raise ConfigError(
+            f"sweep: {n_combinations} combinations with {counted(n_seeds, 'seed')} each: "
+            f"expected at most {MOST_POINTS} points"
+        )
+
+
+def comparisons(config: Config) -> list[Comparison]:
     """Combinations of the axes; those that differ in their policies only are one."""
-    found: dict[str, _Setting] = {}
+    found: dict[str, tuple[Config, Mapping[str, Value], dict[str, PolicyParameters]]] = {}
     for point, swept in _combinations(config):
         key = json.dumps([described(point) | {"policy": None}, swept], sort_keys=True)
-        setting = found.setdefault(key, _Setting(point, swept, {}))
+        _, _, policies = found.setdefault(key, (point, swept, {}))
         for policy in point.policies:
-            if setting.policies.setdefault(policy.title, policy) != policy:
+            if policies.setdefault(policy.title, policy) != policy:
                 raise ConfigError(
                     f"sweep: two policies are called {policy.title!r}: expected a label for each"
                 )
-    return list(found.values())
+    return [Comparison(*each) for each in found.values()]
 
 
 def _combinations(config: Config) -> Iterator[tuple[Config, Mapping[str, Value]]]:
@@ -82,17 +114,11 @@ def _combinations(config: Config) -> Iterator[tuple[Config, Mapping[str, Value]]
     for numbers in product(*(range(len(axis)) for axis in axes.values())):
         chosen = dict(zip(axes, numbers, strict=True))
         names = {k: v for name, n in chosen.items() for k, v in axes[name][n].columns.items()}
-        yield point_at(config, axes, chosen), {name: _cell(names[name]) for name in columns}
+        yield point_at(config, axes, chosen), {name: cell(names[name]) for name in columns}
 
 
-def _cell(value: object) -> Value:
+def cell(value: object) -> Value:
     """A swept value as it is written in rows."""
     if isinstance(value, int | float | str) and not isinstance(value, bool):
         return value
     return json.dumps(value, default=str)
-
-
-def _with_reference(policies: Mapping[str, PolicyParameters]) -> list[PolicyParameters]:
-    """What profits are measured against comes first, named or not."""
-    reference = policies.get(REFERENCE, PolicyParameters(REFERENCE))
-    return [reference, *(policy for title, policy in policies.items() if title != REFERENCE)]

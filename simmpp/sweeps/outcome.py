@@ -16,5 +16,7 @@ class Outcome:
     effective_fraction: float = 0.0
     wall_s: float = 0.0
     """Placement + event loop."""
+    cpu_s: float = 0.0
+    """The same on the processor, whatever else runs beside it."""
     error: str = ""
     """One line; empty if all went well."""

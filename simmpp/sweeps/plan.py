@@ -8,13 +8,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.errors import ConfigError
+from simmpp.strict import misplaced
+from simmpp.sweeps.axes import axes_of, keys_of
+from simmpp.sweeps.columns import KEYS, METHOD, NUMBERS
 from simmpp.sweeps.config import Config, described
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
+from simmpp.sweeps.methods import METHODS
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.overruled import refuse_overruled
-from simmpp.sweeps.point import refuse_unread
+from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.provenance import result_versions
-from simmpp.sweeps.rows import KEYS, NUMBERS, in_order
+from simmpp.sweeps.rows import in_order
 from simmpp.sweeps.tables import Row
 from simmpp.sweeps.task import Task, task_of
 from simmpp.sweeps.workloads import name_and_digest
@@ -40,6 +44,14 @@ class Plan:
     points: tuple[PlannedPoint, ...]
     further: tuple[str, ...]
     """Columns beyond those that all rows have."""
+
+    @property
+    def profit_keys(self) -> tuple[str, ...]:
+        """Columns of ``profits.csv`` beyond those that all have."""
+        swept = {
+            key for axis in axes_of(self.config.settings.sweep).values() for key in keys_of(axis)
+        }
+        return (*self.further, METHOD) if METHOD in swept else self.further
 
     @property
     def tasks(self) -> list[Task]:
@@ -97,12 +109,10 @@ def plan(config: Config) -> Plan:
     Raises InputError for values that do not go together, and for scenes that can't be read.
     """
     refuse_overruled(config)
-    refuse_unread(config)
     workloads: dict[str, tuple[str, str]] = {}
     points: list[PlannedPoint] = []
     for point in grid(config):
-        if (method := point.config.settings.method) != "simulate":
-            raise ConfigError(f"method: value {method!r}: expected simulate here")
+        _refuse_unknown(point)
         made_of = repr((point.config.scene_spec, point.config.picture))
         if made_of not in workloads:
             workloads[made_of] = name_and_digest(point.config)
@@ -113,9 +123,24 @@ def plan(config: Config) -> Plan:
     return Plan(config, tuple(points), further)
 
 
+def _refuse_unknown(point: GridPoint) -> None:
+    """Raise ConfigError for what the method of a point has no notion of."""
+    config = point.config
+    method, places = config.settings.method, config.source.places if config.source else {}
+    known = METHODS[method].policies
+    if known is None:
+        return
+    if point.policy.name not in known:
+        problem = f"value {point.policy.name!r}: method {method} knows {' and '.join(known)} only"
+        raise misplaced(("policy",), problem, places)
+    if config.memory.bytes is not None:
+        problem = f"method {method} knows shares: expected memory.fraction"
+        raise misplaced(("memory", "bytes"), problem, places)
+
+
 def _check_names(points: list[PlannedPoint], further: tuple[str, ...]) -> None:
     """Raise ConfigError if points that differ would have one name, as two files of one name do."""
-    names = [name for name in (*KEYS, *further) if name != "effective_fraction"]
+    names = [name for name in (*KEYS, *further, METHOD) if name != "effective_fraction"]
     tasks: dict[tuple[object, ...], str] = {}
     for each in points:
         row = _row(each, Outcome(each.task.key))
@@ -138,8 +163,9 @@ def _row(planned: PlannedPoint, outcome: Outcome) -> Row:
         "seed": point.seed,
         **point.swept,
         "method": settings.method,
-        "engine": settings.engine,
+        "engine": settings.engine if METHODS[settings.method].uses_engine else "",
         **dict.fromkeys(NUMBERS, ""),
         **outcome.numbers,
         "error": outcome.error,
+        SIMULATION: planned.task.key,
     }

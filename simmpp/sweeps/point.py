@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypedDict
 
+from simmpp.engine.log import Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
-from simmpp.errors import ConfigError
 from simmpp.machine.machine import Machine
 from simmpp.machine.work import total_compute_ps
 from simmpp.placement.place import place
@@ -17,6 +18,7 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.strict import misplaced
 from simmpp.sweeps.config import Config
+from simmpp.sweeps.methods import SIMULATE
 from simmpp.workload.workload import Workload
 
 REFERENCE, CEILING = "object", "replicated"
@@ -61,23 +63,19 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
 
     Raises ConfigError if the memory or the machine's shape does not fit.
     """
-    refuse_unread(config)
+    refuse_models(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
     placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
     return Point(config, workload, machine, placement, seed)
 
 
-def refuse_unread(config: Config) -> None:
-    """Raise ConfigError for keys that a simulation does not read: other methods, more seeds."""
-    settings, source = config.settings, config.source
-    if settings.method != "simulate":
-        raise ConfigError(f"method: value {settings.method!r}: expected simulate here")
-    given = [] if settings.tolerance is None else ["tolerance"]
-    given += ["max_seeds"] if "max_seeds" in settings.model_fields_set else []
-    for key in given:
-        problem = "not yet: expected it not to be given; simulations take the key seeds"
-        raise misplaced((key,), problem, source.places if source else {})
+def refuse_models(config: Config) -> None:
+    """Raise ConfigError for a method that simulates nothing."""
+    method = config.settings.method
+    if method != SIMULATE:
+        places = config.source.places if config.source else {}
+        raise misplaced(("method",), f"value {method!r}: expected {SIMULATE} here", places)
 
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
@@ -91,25 +89,41 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
 
 
+class Records(TypedDict):
+    """What a run notes besides its counters."""
+
+    log: bool | Sink
+    record_tests: bool
+    record_hops: bool
+
+
 def run_point(
     point: Point,
     *,
     record_tests: bool = False,
+    record_hops: bool = False,
+    log_of: Callable[[PolicyParameters], Sink] | None = None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
     """Simulate the policies one after the other, yielding each as it is finished.
 
-    ``progress(title, rays left)`` is called now and then.
+    ``log_of`` gives what gets the event log of a policy's run. ``progress(title, rays left)`` is
+    called now and then.
     """
     for parameters, named in policies_of(point.config):
-        yield _run(point, parameters, named, record_tests, progress)
+        records: Records = {
+            "log": False if log_of is None else log_of(parameters),
+            "record_tests": record_tests,
+            "record_hops": record_hops,
+        }
+        yield _run(point, parameters, named, records, progress)
 
 
 def _run(
     point: Point,
     parameters: PolicyParameters,
     named: bool,
-    record_tests: bool,
+    records: Records,
     progress: Callable[[str, int], None] | None,
 ) -> PolicyRun:
     def report(rays_left: int) -> None:
@@ -125,8 +139,8 @@ def _run(
         parameters,
         engine=settings.engine,
         ready_order=settings.ready_order,
-        record_tests=record_tests,
         progress=report,
+        **records,
     )
     return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 

@@ -1,21 +1,26 @@
 """``profits.csv``: what each policy gains over object dataflow, over all seeds of a point.
 
-Source: Nebel 1998, section 4 (figures 3 to 5); intervals are Student's (1908).
+Source: Nebel 1998, section 4 (figures 3 to 5).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from statistics import fmean
 
+from simmpp.sweeps.columns import KEYS
+from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.rows import KEYS
+from simmpp.sweeps.seeding import corrected_interval
 from simmpp.sweeps.tables import Row, sort_key
 
-CONFIDENCE = 0.95
-"""Of the intervals from low to high."""
-MEASURES = ("time_profit", "message_profit")
+MEASURES = {"time_profit": "makespan_ps", "message_profit": "messages"}
+"""Each profit and the column that it is a ratio of."""
+SIMULATION = "simulation"
+"""What rows may tell besides their columns: the simulation that they are of. A point whose seeds
+share one has nothing that is drawn."""
 STATISTICS = ("", "_low", "_high", "_min", "_max")
 
 
@@ -29,29 +34,37 @@ def _keys(further: Sequence[str]) -> tuple[str, ...]:
     return (*(key for key in KEYS if key != "seed"), *further)
 
 
-def profit_rows(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
+def profit_rows(
+    rows: Iterable[Row], further: Sequence[str] = (), tolerance: Fraction | None = None
+) -> list[Row]:
     """One row for each point, over its seeds; ``further`` columns are keys as well.
 
     A seed counts if its run and its reference's have no error; n is their number. An interval
-    needs two seeds and finite profits, and is empty otherwise.
+    needs two seeds and finite profits, and is empty otherwise; with a ``tolerance`` it makes up
+    for a number of seeds that was chosen by their values. What rows do not know is empty, too.
     """
     names = [name for name in _keys(further) if name != "effective_fraction"]
     points: dict[tuple[object, ...], dict[int, Row]] = {}
     for row in rows:
         points.setdefault(tuple(row[name] for name in names), {})[row["seed"]] = row
     at = names.index("policy")
-    found = [
-        _over_seeds(by_seed, points.get((*key[:at], REFERENCE, *key[at + 1 :]), {}), further)
-        for key, by_seed in points.items()
-    ]
+    found = []
+    for key, by_seed in points.items():
+        references = points.get((*key[:at], REFERENCE, *key[at + 1 :]), {})
+        found.append(_over_seeds(by_seed, references, further, tolerance))
     return sorted(found, key=lambda row: sort_key(row, _keys(further)))
 
 
-def _over_seeds(by_seed: dict[int, Row], references: dict[int, Row], further: Sequence[str]) -> Row:
+def _over_seeds(
+    by_seed: dict[int, Row],
+    references: dict[int, Row],
+    further: Sequence[str],
+    tolerance: Fraction | None,
+) -> Row:
     """The row of one policy at one point."""
     good = [by_seed[seed] for seed in sorted(by_seed) if not by_seed[seed]["error"]]
     pairs = [
-        (row, references[row["seed"]])
+        (references[row["seed"]], row)
         for row in good
         if row["seed"] in references and not references[row["seed"]]["error"]
     ]
@@ -59,14 +72,44 @@ def _over_seeds(by_seed: dict[int, Row], references: dict[int, Row], further: Se
     result: Row = {name: first[name] for name in _keys(further)}
     result["effective_fraction"] = _mean([row["effective_fraction"] for row in good])
     result["n"] = len(pairs)
-    for measure, column in zip(MEASURES, ("makespan_ps", "messages"), strict=True):
-        values = [ratio(base[column], row[column]) for row, base in pairs]
-        result |= {measure + name: value for name, value in _statistics(values).items()}
+    for measure, column in MEASURES.items():
+        values = profits_of(pairs, column)
+        bounds = _bounds(values, pairs, tolerance)
+        result |= {measure + name: value for name, value in _statistics(values, bounds).items()}
     # one PE with everything in memory does nothing but compute
-    speedups = [ratio(row["compute_ps"], row["makespan_ps"]) for row, _ in pairs]
+    known = [row for _, row in pairs if row["compute_ps"] != ""]
+    speedups = [ratio(row["compute_ps"], row["makespan_ps"]) for row in known]
     result["speedup"] = _mean(speedups)
     result["efficiency"] = _mean([speedup / first["processors"] for speedup in speedups])
     return result
+
+
+def profits_of(pairs: Sequence[tuple[Row, Row]], column: str) -> list[float]:
+    """The ratio of a column of each seed's reference and run; none where one is not known."""
+    return [
+        ratio(base[column], row[column])
+        for base, row in pairs
+        if base[column] != "" and row[column] != ""
+    ]
+
+
+def _bounds(
+    values: Sequence[float], pairs: Sequence[tuple[Row, Row]], tolerance: Fraction | None
+) -> tuple[float, float] | None:
+    if not values or tolerance is None:
+        return interval(values) if values else None
+    return corrected_interval(values, tolerance, is_drawn=_is_drawn(pairs))
+
+
+def _is_drawn(pairs: Sequence[tuple[Row, Row]]) -> bool:
+    """Whether the profit of another seed could be another one.
+
+    Not so where all seeds are one simulation, where the run is its own reference, and where PEs
+    hold either nothing but their own objects or all.
+    """
+    simulations = {(base.get(SIMULATION), row.get(SIMULATION)) for base, row in pairs}
+    replicated = any(1 / row["processors"] < row["effective_fraction"] < 1 for _, row in pairs)
+    return replicated and len(simulations) > 1 and any(a != b for a, b in simulations)
 
 
 def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, float] | None:
@@ -111,22 +154,9 @@ def ratio(reference: int, value: int) -> float:
     return math.inf if reference else 1.0
 
 
-def _statistics(values: Sequence[float]) -> dict[str, object]:
-    """Mean, Student's interval, extremes; what can't be said is empty."""
+def _statistics(values: Sequence[float], bounds: tuple[float, float] | None) -> dict[str, object]:
+    """Mean, interval, extremes; what can't be said is empty."""
     if not values:
         return dict.fromkeys(STATISTICS, "")
-    low, high = interval(values) or ("", "")
-    numbers = (fmean(values), low, high, min(values), max(values))
+    numbers = (fmean(values), *(bounds or ("", "")), min(values), max(values))
     return dict(zip(STATISTICS, numbers, strict=True))
-
-
-def interval(values: Sequence[float]) -> tuple[float, float] | None:
-    """The 95 % confidence interval of the mean of independent draws; None if they can't tell."""
-    from scipy.special import stdtrit  # takes half a second
-
-    n, mean = len(values), fmean(values)
-    if n < 2 or not math.isfinite(mean):
-        return None
-    deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1))
-    half = float(stdtrit(n - 1, (1 + CONFIDENCE) / 2)) * deviation / math.sqrt(n)
-    return mean - half, mean + half

@@ -13,7 +13,7 @@ from simmpp.compiled import source_digest
 
 LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh", "mapbox-earcut")
 """Libraries that rays, draws and simulated times pass through."""
-DECIDING = ("simmpp.workload.tracer", "simmpp.placement.place", "simmpp.engine.simulate")
+DECIDING = ("simmpp.workload.tracer", "simmpp.placement.place", "simmpp.sweeps.methods")
 """Modules that, with all that they import, decide what results are."""
 
 

@@ -26,6 +26,7 @@ from simmpp.strict import (
     parsed_by,
 )
 from simmpp.sweeps import values
+from simmpp.sweeps.methods import METHODS, SIMULATE
 from simmpp.sweeps.scene_settings import SceneSettings, long_scene
 from simmpp.units import shown
 
@@ -189,15 +190,21 @@ class Settings(Strict):
     )
     tolerance: Tolerance = Field(
         default=None,
-        description="not yet (`run`, `sweep` and `check` refuse it): seeds are added until both "
-        "profits are known this well",
+        description="`sweep` and `check` add seeds until the 95 % intervals of both profits are "
+        "within this share of the mean, for each policy; at least 8 seeds, those given first",
     )
     max_seeds: Annotated[int, *integer(8, 100_000)] = Field(
-        default=64, description="not yet, likewise: seeds at most per point with a tolerance"
+        default=64, description="seeds at most per point with a tolerance"
     )
-    method: Annotated[str, *one_of("simulate", "analytical", "analytical-measured")] = Field(
-        default="simulate",
-        description="simulation, or the paper's analytical model (`simmpp model` only)",
+    refine: Switch = Field(
+        default=False,
+        description="`sweep` and `check` add points along axes of `memory.fraction` and of whole "
+        "numbers where lines between the profits would be off by more than the tolerance",
+    )
+    method: Annotated[str, *one_of(*METHODS)] = Field(
+        default=SIMULATE,
+        description="simulation, or the paper's analytical model of object and ray dataflow "
+        "(`sweep`, `check` and `model`)",
     )
     engine: Annotated[str, *one_of(*ENGINES)] = Field(
         default=DEFAULT_ENGINE, description="event loop: compiled, or the readable one in SimPy"
@@ -214,6 +221,16 @@ class Settings(Strict):
     def _picture_is_traced(self) -> Settings:
         if self.scene.workload is not None and "picture" in self.model_fields_set:
             raise mistake("picture goes with a scene that is traced, not with scene.workload")
+        return self
+
+    @model_validator(mode="after")
+    def _seeds_can_be_added(self) -> Settings:
+        if self.tolerance is None:
+            for key in ("max_seeds", "refine"):
+                if key in self.model_fields_set and getattr(self, key):
+                    raise mistake(f"{key} goes with a tolerance: expected a key tolerance as well")
+        elif len(self.seeds) > self.max_seeds:
+            raise mistake(f"max_seeds is {self.max_seeds}, and {len(self.seeds)} seeds are given")
         return self
 
     @field_validator("policy")

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from simmpp.sweeps.columns import result_columns
 from simmpp.sweeps.config import Config, config_from_mapping, load_config, with_key
-from simmpp.sweeps.crew import Crew, crew_for
+from simmpp.sweeps.crew import Crew
 from simmpp.sweeps.execute import outcomes as execute
+from simmpp.sweeps.frontier import Frontier
+from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal, Results
 from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.profits import profit_columns, profit_rows
 from simmpp.sweeps.provenance import all_versions
-from simmpp.sweeps.rows import result_columns
+from simmpp.sweeps.showing import Showing
 from simmpp.sweeps.tables import Row, as_arrow, write_csv, write_parquet, write_text
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import keep_workload
@@ -45,6 +49,9 @@ class Watcher:
 
     def tracing(self, scene: str, done: int, total: int) -> None:
         """Rays done and rays known of a workload that is being traced."""
+
+    def asked(self, tasks: int) -> None:
+        """That many more tasks are found to be needed."""
 
     def simulated(self, outcome: Outcome) -> None:
         """One more task is finished."""
@@ -89,11 +96,11 @@ def run_sweep(
     made = plan(config)
     folder = None if out is None else Path(out)
     with closing(_results(made, folder)) as results, closing(crew_for(workers, cluster)) as crew:
-        _simulate(made, results, crew, timeout_s, folder, watcher or Watcher())
-    rows = made.rows(results.outcomes)
+        made = _simulate(made, results, crew, timeout_s, folder, watcher or Watcher())
+    rows, tolerance = made.rows(results.outcomes), config.settings.tolerance
     return SweepResult(
         _frame(rows, result_columns(made.further)),
-        _frame(profit_rows(rows, made.further), profit_columns(made.further)),
+        _frame(profit_rows(rows, made.profit_keys, tolerance), profit_columns(made.profit_keys)),
     )
 
 
@@ -111,33 +118,56 @@ def _simulate(
     timeout_s: float | None,
     folder: Path | None,
     watcher: Watcher,
-) -> None:
-    """Run what isn't finished; the tables are written even when interrupted."""
+) -> Plan:
+    """Run what isn't finished; the tables are written even when interrupted.
+
+    Returns the plan with all that turned out to be needed.
+    """
+    frontier = Frontier(plan, results)
+    if folder is None:
+        run_pending(frontier, results, crew, timeout_s, watcher)
+        return frontier.plan
+
+    def write() -> None:
+        write_tables(frontier.plan, results, folder)
+
+    showing = Showing(write)
     try:
-        run_pending(plan, results, crew, timeout_s, watcher)
+        run_pending(frontier, results, crew, timeout_s, watcher, showing)
     finally:
-        if folder is not None:
-            write_tables(plan, results, folder)
+        write()
+    return frontier.plan
 
 
 def run_pending(
-    plan: Plan, results: Results, crew: Crew, timeout_s: float | None, watcher: Watcher
+    frontier: Frontier,
+    results: Results,
+    crew: Crew,
+    timeout_s: float | None,
+    watcher: Watcher,
+    after_each: Callable[[], None] = lambda: None,
 ) -> None:
-    """Run what isn't finished; ``results`` grow one by one."""
+    """Run what isn't finished, and what that shows to be needed; ``results`` grow one by one."""
     for text in results.notices:
         watcher.notice(text)
-    pending = [task for task in plan.tasks if not results.finished(task.key)]
-    watcher.planned(plan, results.outcomes)
-    _trace(plan, pending, results, watcher)
+    pending = deque(frontier.pending)
+    watcher.planned(frontier.plan, results.outcomes)
+    _trace(frontier.plan, pending, results, watcher)
     for outcome in execute(pending, crew, timeout_s):
         results.add(outcome)
+        if more := frontier.take(outcome):
+            pending.extend(more)  # while these wait, others run
+            watcher.asked(len(more))
         watcher.simulated(outcome)
+        after_each()
 
 
-def _trace(plan: Plan, tasks: Sequence[Task], results: Results, watcher: Watcher) -> None:
+def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher) -> None:
     """Bring the workloads that are needed into the cache, from where workers share them."""
     scenes = {each.task.digest: each.scene for each in plan.points}
-    first_tasks = {task.digest: task for task in reversed(tasks)}
+    first_tasks: dict[str, Task] = {}
+    for task in tasks:
+        first_tasks.setdefault(task.digest, task)
     for digest, task in first_tasks.items():
         began_s = time.perf_counter()
         tell = partial(watcher.tracing, scenes[digest])
@@ -149,10 +179,15 @@ def _trace(plan: Plan, tasks: Sequence[Task], results: Results, watcher: Watcher
 
 def write_tables(plan: Plan, results: Results, folder: Path) -> None:
     """Write the tables of the points that are finished, and what they are of."""
-    rows, further = plan.rows(results.outcomes), plan.further
-    write_csv(rows, result_columns(further), folder / RESULTS)
-    write_parquet(rows, result_columns(further), folder / PARQUET)
-    write_csv(profit_rows(rows, further), profit_columns(further), folder / PROFITS)
+    rows, columns, keys = (
+        plan.rows(results.outcomes),
+        result_columns(plan.further),
+        plan.profit_keys,
+    )
+    write_csv(rows, columns, folder / RESULTS)
+    write_parquet(rows, columns, folder / PARQUET)
+    profits = profit_rows(rows, keys, plan.config.settings.tolerance)
+    write_csv(profits, profit_columns(keys), folder / PROFITS)
     timings = plan.timings(results.outcomes, results.trace_s)
     write_csv(timings, plan.timing_columns, folder / TIMINGS)
     write_text(json.dumps(_record(plan), indent=1) + "\n", folder / RECORD)

@@ -5,13 +5,18 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import asdict, dataclass, replace
+from fractions import Fraction
 from typing import Any
 
+from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.sweeps.config import Config
 from simmpp.sweeps.grid import GridPoint
+from simmpp.sweeps.methods import METHODS, SIMULATE
+
+NO_DATAFLOW = "replicated"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +32,7 @@ class Task:
     config: Config
     policy: PolicyParameters
     seed: int
+    """The point's; 0 where nothing is drawn, so that all seeds are one simulation."""
 
 
 def task_of(point: GridPoint, digest: str) -> Task:
@@ -35,23 +41,28 @@ def task_of(point: GridPoint, digest: str) -> Task:
     Raises ConfigError if the machine does not have the point's number of PEs.
     """
     config, policy = point.config, canonical(point.policy)
+    settings = config.settings
+    if settings.method == SIMULATE and _holds_everything(config):
+        policy = PolicyParameters(NO_DATAFLOW)
     everywhere = POLICIES[policy.name].all_resident
-    memory = {} if everywhere else asdict(_canonical(config.memory))  # {}: unlike any fraction's
     rules = config.placement_rules
     if everywhere:
         rules = PlacementRules(pixels=rules.pixels)
+    memory = replace(Memory(), fraction=Fraction(1)) if everywhere else _canonical(config.memory)
+    is_drawn = METHODS[settings.method].is_placed and draws(memory, rules)
+    seed = point.seed if is_drawn else 0
     machine = asdict(replace(config.machine_for(config.processors), sources={}))
     for label in ("name", "sources"):
         del machine[label]
-    place = _hash(digest, machine, memory, asdict(rules), point.seed)
-    settings = config.settings
+    held = {} if everywhere else asdict(memory)  # {}: unlike any fraction's
+    place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(
         key=_hash(place, asdict(policy), settings.ready_order, settings.method, settings.engine),
         placement_key=place,
         digest=digest,
         config=replace(config, source=None),
         policy=policy,
-        seed=point.seed,
+        seed=seed,
     )
 
 
@@ -67,6 +78,12 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     ignored += [] if rules.asks and rules.ask_at_least is None else ["ask_at_least"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
+
+
+def _holds_everything(config: Config) -> bool:
+    """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
+    full = config.memory.bytes is None and config.memory.fraction >= 1
+    return full or config.processors == 1
 
 
 def _canonical(memory: Memory) -> Memory:

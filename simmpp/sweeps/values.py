@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from simmpp.arguments import MOST_SEED
 from simmpp.errors import ConfigError
 from simmpp.sweeps.axes import axes_of
 from simmpp.units import picoseconds, share, shown
@@ -18,7 +19,6 @@ OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
 MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
 LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
 SIZE = "an integer from 1 to what the scene can have"
-MOST_SEED = 2**63 - 1
 SEEDS = f"a list of different integers from 0 to {MOST_SEED}, such as [0, 1, 2]"
 TOLERANCE = "none, or a share above 0% and below 100%, such as 2%"
 

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from threading import Lock
 from typing import Generic, TypeVar
 
-from simmpp.engine.simulate import simulate
 from simmpp.errors import SimmppError
+from simmpp.placement.place import place
+from simmpp.placement.placement import Placement
 from simmpp.policy.table import POLICIES
+from simmpp.sweeps.case import Case
+from simmpp.sweeps.methods import METHODS, Method
 from simmpp.sweeps.outcome import Outcome
-from simmpp.sweeps.point import Point, make_point
 from simmpp.sweeps.provenance import difference, result_versions
-from simmpp.sweeps.rows import integers
+from simmpp.sweeps.stopwatch import Seconds, Stopwatch, now
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.warm import warm_up
 from simmpp.sweeps.workloads import shared_workload
 from simmpp.workload.workload import Workload
 
 Made = TypeVar("Made")
-
-
-class TimedOut(SimmppError):
-    """A point took longer than it may."""
 
 
 class Kept(Generic[Made]):
@@ -44,7 +41,7 @@ class Kept(Generic[Made]):
 
 
 _workloads: Kept[Workload] = Kept(2)
-_points: Kept[tuple[Point, float]] = Kept(4)
+_placements: Kept[tuple[Placement, Seconds]] = Kept(4)
 
 
 def keep_workload(workload: Workload) -> None:
@@ -76,37 +73,41 @@ def _compare(versions: Mapping[str, str]) -> None:
 
 
 def _simulated(task: Task, timeout_s: float | None) -> Outcome:
-    settings = task.config.settings
-    warm_up(settings.engine)
-    workload = _workloads.get(task.digest, lambda: shared_workload(task.config, task.digest))
-    point, placing_s = _points.get(task.placement_key, lambda: _placed(task, workload))
-    began_s = time.perf_counter()
-
-    def stop_in_time(rays_left: int) -> None:
-        if timeout_s is not None and placing_s + time.perf_counter() - began_s > timeout_s:
-            raise TimedOut(f"timeout: not finished after {timeout_s:g} s")
-
-    stop_in_time(workload.n_rays)
-    result = simulate(
+    config, settings = task.config, task.config.settings
+    method = METHODS[settings.method]
+    if method.is_placed:
+        warm_up(settings.engine)
+    workload = _workloads.get(task.digest, lambda: shared_workload(config, task.digest))
+    machine, watch = config.machine_for(config.processors), Stopwatch(timeout_s)
+    watch.look(workload.n_rays)
+    case = Case(
         workload,
-        point.machine,
-        point.placement,
+        machine,
         task.policy,
-        engine=settings.engine,
-        ready_order=settings.ready_order,
-        progress=stop_in_time,
+        config.memory.fraction,
+        settings.engine,
+        settings.ready_order,
+        place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
+        tick=watch.look,
     )
-    everywhere = POLICIES[task.policy.name].all_resident
-    return Outcome(
-        task.key,
-        integers(result),
-        1.0 if everywhere else point.placement.effective_fraction,
-        placing_s + time.perf_counter() - began_s,
-    )
+    numbers = method.numbers(case)
+    took = watch.seconds
+    return Outcome(task.key, numbers, _effective_fraction(case, method), took.wall, took.cpu)
 
 
-def _placed(task: Task, workload: Workload) -> tuple[Point, float]:
-    """The point and the seconds that drawing its placement took."""
-    began_s = time.perf_counter()
-    point = make_point(task.config, workload, task.seed)
-    return point, time.perf_counter() - began_s
+def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
+    """The placement and the seconds that drawing it took."""
+    began, config = now(), task.config
+    placement = place(
+        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
+    )
+    return placement, now() - began
+
+
+def _effective_fraction(case: Case, method: Method) -> float:
+    """The share of the objects that is really resident; the model's own where nothing is placed."""
+    if POLICIES[case.policy.name].all_resident:
+        return 1.0
+    if method.is_placed:
+        return case.place().effective_fraction
+    return max(float(case.fraction), 1 / case.machine.processors)

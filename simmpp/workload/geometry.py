@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.errors import SceneError
 from simmpp.scene.scene import Cone, MeshPart, Polygon, Scene, SceneObject, Sphere
 from simmpp.scene.triangles import triangles
 from simmpp.workload import bvh
@@ -86,10 +84,6 @@ def flatten(scene: Scene, frame: Frame) -> Geometry:
     roots, tree = _trees(boxes, after - counts, counts, surfaces)
     objects = np.stack([kinds, np.where(roots < 0, after - counts, after), after, roots], axis=1)
     materials = [scene.materials[thing.material] for thing in things]
-    for number, material in enumerate(scene.materials):
-        if material.transmits and not 0.0 < material.ior < math.inf:
-            problem = f"material {number} transmits, its ior is {material.ior}, expected above 0"
-            raise SceneError(problem, where=scene.name)
     return Geometry(
         shapes=Shapes(objects.astype(np.int32), surfaces, *tree, T_MIN * diagonal(box)),
         boxes=boxes,

@@ -17,8 +17,11 @@ from simmpp.scene.scene import Cone, Scene, SceneObject, Sphere
 
 Floats = NDArray[np.float64]
 
-EXPONENT_LIMIT = 1000
-"""Powers of two beyond this one would overflow on the way back."""
+EXPONENT_LIMIT = 900
+"""Scenes larger than 2 to this, or smaller than its inverse, would lose digits of their distances
+to overflow or to subnormal numbers."""
+GRID = 2.0**-32
+"""Step of rounded lengths, normalised: a million roundings of float64, and far below any object."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +40,9 @@ class Frame:
         """(..., 3) float64 in scene units, normalised."""
         return (np.asarray(points, dtype=np.float64) - self.origin) * self.scale
 
-    def scene_points(self, points: Floats) -> Floats:
-        """(..., 3) float64 normalised, in scene units."""
-        return points / self.scale + self.origin
+    def rounded(self, lengths: Floats) -> Floats:
+        """Lengths in scene units to the nearest GRID: what is equal but for roundings is equal."""
+        return np.rint(lengths * (self.scale / GRID)) * (GRID / self.scale)
 
     def scene_lengths(self, lengths: Floats) -> Floats:
         """Normalised lengths in scene units, exact; infinity stays."""
@@ -52,7 +55,7 @@ def frame_of(scene: Scene) -> Frame:
     Raises
     ------
     SceneError
-        A coordinate or radius is not finite.
+        A coordinate or radius is not finite, or the scene is too large or too small for float64.
     """
     if not scene.objects:
         return Frame(np.zeros(3), 1.0)
@@ -64,10 +67,10 @@ def frame_of(scene: Scene) -> Frame:
     origin = points.min(axis=0)
     with np.errstate(over="ignore"):
         extent = float(((points - origin + radii).max(0) - (points - origin - radii).min(0)).max())
-    if not math.isfinite(extent):
-        raise SceneError("the scene's extent overflows", where=scene.name)
     _, exponent = math.frexp(extent)
-    exponent = max(-EXPONENT_LIMIT, min(EXPONENT_LIMIT, exponent))
+    if not (math.isfinite(extent) and abs(exponent) <= EXPONENT_LIMIT):
+        limits = f"expected 0, or from {2.0**-EXPONENT_LIMIT:.0e} to {2.0**EXPONENT_LIMIT:.0e}"
+        raise SceneError(f"the scene's extent is {extent:g}: {limits}", where=scene.name)
     return Frame(origin, math.ldexp(1.0, -exponent))
 
 
@@ -76,7 +79,7 @@ def _input_coordinates(thing: SceneObject) -> tuple[Floats, float]:
     if isinstance(thing, Sphere):
         return np.array([thing.centre], dtype=np.float64), thing.radius
     if isinstance(thing, Cone):
-        radius = max(abs(thing.base_radius), abs(thing.apex_radius))
+        radius = float(np.abs([thing.base_radius, thing.apex_radius]).max())  # NaN if one is
         return np.array([thing.base, thing.apex], dtype=np.float64), radius
     return np.asarray(thing.vertices, dtype=np.float64), 0.0
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
+
+from simmpp.arguments import require_whole, require_word
 
 Samples = Literal["centres", "corners"]
 
@@ -24,6 +26,11 @@ class Picture:
     shadows: bool = True
     reflection: bool = True
     refraction: bool = True
+
+    def __post_init__(self) -> None:
+        require_whole("resolution", self.resolution, 1)
+        require_whole("max_depth", self.max_depth, 1)
+        require_word("samples", self.samples, get_args(Samples))
 
     @property
     def shape(self) -> tuple[int, int]:

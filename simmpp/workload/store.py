@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from simmpp.compiled import cache_folder
 from simmpp.errors import WorkloadError
+from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.aligned_npz import map_arrays, write_aligned
 from simmpp.workload.check import check
@@ -48,6 +49,7 @@ def workload_for(
     ``notice`` (default: a warning) is told of a damaged file, which is made again, and of a cache
     that can't be written, which costs only the next run's time.
     """
+    check_scene(scene)
     tell = notice or (lambda text: warnings.warn(text, stacklevel=3))
     digest = digest_of(scene, picture)
     path = cached_path(digest)

@@ -107,7 +107,8 @@ def faces(surface: Surface, x: float, y: float, z: float) -> bool:
 
     Inside glass that is its outside: from the inside, the glass itself would block every light.
     """
-    return surface.lx * x + surface.ly * y + surface.lz * z > 0.0
+    towards_it = surface.lx * x + surface.ly * y + surface.lz * z > 0.0
+    return towards_it and x * x + y * y + z * z > 0.0  # not at a light's own place
 
 
 @njit_reading

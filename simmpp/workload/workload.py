@@ -57,7 +57,8 @@ class Workload:
     object_bytes: NDArray[np.int64]
     """(N,) int64: size on the wire, without a message's header."""
     object_centroids: NDArray[np.float64]
-    """(N, 3) float64: centre of the object's box, in scene units; owners are placed by it."""
+    """(N, 3) float64: centre of the object, in scene units; owners are placed by it. The tracer's
+    are those of boxes, from the scene's least coordinates, rounded so that equal ones are equal."""
     object_test_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(N,) int64 picoseconds: what one test of the object costs, whatever its kind; (0,) where the
     machine decides by kind and triangles."""

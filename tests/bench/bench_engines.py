@@ -8,15 +8,16 @@ measured in one process, so it holds on any machine; the rates do not.
 
 from __future__ import annotations
 
-import dataclasses
 import resource
 import time
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 import simmpp
 from simmpp.engine.result import Result
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.workload.store import workload_for
@@ -48,7 +49,7 @@ def exchanges(processors: int) -> tuple[Workload, Machine, Placement]:
         object_bytes=np.full(processors, 1024 - 64, np.int64),
         object_centroids=np.zeros((processors, 3)),
     )
-    machine = dataclasses.replace(simmpp.make_machine(processors=processors), request_bytes=0)
+    machine = replace(simmpp.make_machine(processors=processors), request_bytes=0)
     placement = Placement(
         processors=processors,
         owners=np.arange(processors, dtype=np.int32),
@@ -70,13 +71,18 @@ def mountain5(processors: int, resolution: int = 512) -> tuple[Workload, Machine
 
 
 def best_s(engine: str, case: tuple[Workload, Machine, Placement]) -> tuple[float, Result]:
-    """The shortest of some runs, in CPU seconds."""
-    policy, times = simmpp.PolicyParameters("object"), []
-    for _ in range(REPEATS):
-        began_s = time.process_time()
-        result = simmpp.simulate(*case, policy, engine=engine)
-        times.append(time.process_time() - began_s)
-    return min(times), result
+    """The shortest of some runs of object dataflow, in CPU seconds."""
+    runs = [run_s(engine, case, "object") for _ in range(REPEATS)]
+    return min(seconds for seconds, _ in runs), runs[0][1]
+
+
+def run_s(
+    engine: str, case: tuple[Workload, Machine, Placement], policy: str
+) -> tuple[float, Result]:
+    """One run and its CPU seconds."""
+    began_s = time.process_time()
+    result = simmpp.simulate(*case, simmpp.PolicyParameters(policy), engine=engine)
+    return time.process_time() - began_s, result
 
 
 def main() -> None:
@@ -112,6 +118,29 @@ def growth() -> None:
         )
 
 
+def contention() -> None:
+    """What links and ports cost: times of runs one after the other, without and with them."""
+    print(
+        "\nlinks, ports, compiled\nload      policy        PEs   messages     none    links  ratio"
+    )
+    loads = [(exchanges, "object", processors) for processors in (64, 512, 4096)]
+    loads += [(mountain5, policy, 64) for policy in ("object", "ray", "concurrent")]
+    for load, policy, processors in loads:
+        workload, machine, placement = load(processors)
+        machines = [replace(machine, contention=each) for each in CONTENTIONS]
+        times: list[list[float]] = [[], []]
+        for _ in range(2 * REPEATS):  # alternately, as others use the processor too
+            for each, found in zip(machines, times, strict=True):
+                seconds, result = run_s("compiled", (workload, each, placement), policy)
+                found.append(seconds)
+        none_s, links_s = map(min, times)
+        print(
+            f"{load.__name__:9} {policy:11} {processors:5} {result.messages:10} "
+            f"{none_s:8.3f} {links_s:8.3f} {links_s / none_s:6.2f}"
+        )
+
+
 if __name__ == "__main__":
     main()
+    contention()
     growth()

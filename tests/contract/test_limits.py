@@ -7,10 +7,13 @@ from fractions import Fraction
 
 import pytest
 from builders import random_case
+from by_hand import OBJECT, case_of
+from implementations import run as run_case_on
 
 import simmpp
 from simmpp.engine.simulate import ENGINES
 from simmpp.errors import ConfigError
+from simmpp.machine.links import LINKS, NO_CONTENTION
 from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.policy.table import POLICIES
 from simmpp.scene.scene import Camera, Scene
@@ -71,3 +74,15 @@ def test_a_full_clock_is_an_error_and_never_wraps(engine: str) -> None:
     for machine in (computing, waiting):
         with pytest.raises(ConfigError, match="exceeds the clock"):
             simmpp.simulate(case.workload, machine, *run_case[2:], engine=engine)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("each_s", [400_000, 2_250_000])
+def test_waiting_for_links_beyond_the_clock_is_an_error(engine: str, each_s: int) -> None:
+    # No flight takes half of the clock, but PE 0's ejection port takes one request at a time
+    rays = [(pe, [0]) for pe in range(1, 13)]
+    slow = {"header_bytes": each_s, "link_bytes_per_s": 1, "shape": (13, 1, 1)}
+    alone = run_case_on(engine, case_of(OBJECT, rays, contention=NO_CONTENTION, **slow))
+    assert alone.makespan_ps < CLOCK_LIMIT_PS
+    with pytest.raises(ConfigError, match="exceeds the clock"):
+        run_case_on(engine, case_of(OBJECT, rays, contention=LINKS, **slow))

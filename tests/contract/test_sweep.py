@@ -2,6 +2,7 @@
 
 import json
 import random
+from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
@@ -20,13 +21,15 @@ from simmpp.errors import ConfigError, ModelError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
 from simmpp.sweeps import plan as planning
-from simmpp.sweeps import worker
+from simmpp.sweeps import simulating, worker
+from simmpp.sweeps.columns import result_columns
 from simmpp.sweeps.config import config_from_mapping, with_key
 from simmpp.sweeps.crew import Crew
 from simmpp.sweeps.execute import outcomes
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.point import make_point, run_point
-from simmpp.sweeps.rows import in_order, integers, result_columns, row
+from simmpp.sweeps.rows import in_order, row
+from simmpp.sweeps.simulating import integers
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.task import canonical
 from simmpp.sweeps.workloads import workload_of
@@ -118,9 +121,9 @@ def test_both_engines_write_the_same(expected: dict[str, bytes], tmp_path: Path)
 @given(st.randoms(use_true_random=False))
 def test_the_order_of_tasks_is_irrelevant(made: Plan, shuffled: random.Random) -> None:
     tasks = made.tasks
-    in_order = {o.key: o for o in outcomes(tasks, Crew(ThreadPoolExecutor(1), 1), None)}
+    in_order = {o.key: o for o in outcomes(deque(tasks), Crew(ThreadPoolExecutor(1), 1), None)}
     shuffled.shuffle(tasks)
-    found = {o.key: o for o in outcomes(tasks, Crew(ThreadPoolExecutor(3), 5), None)}
+    found = {o.key: o for o in outcomes(deque(tasks), Crew(ThreadPoolExecutor(3), 5), None)}
     assert made.rows(found) == made.rows(in_order)
 
 
@@ -194,11 +197,11 @@ def test_a_failed_point_is_a_row_and_is_run_again(
 
     Path(tmp_path / "c.yaml").write_text(json.dumps(CONFIG))
     arguments = ["sweep", str(tmp_path / "c.yaml"), "--workers", "1", "--out", str(tmp_path / "o")]
-    monkeypatch.setattr(worker, "simulate", starving)
+    monkeypatch.setattr(simulating, "simulate", starving)
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 1
-    assert "24 rows, 4 failed" in done.stdout
-    assert "4 failed: ray 3 waits for ever" in done.stderr
+    assert "24 rows, 2 failed" in done.stdout
+    assert "2 failed: ray 3 waits for ever" in done.stderr
     rows = pandas.read_csv(tmp_path / "o" / "results.csv")
     failed = rows[rows["error"].notna()]
     assert len(rows) == 24

@@ -19,7 +19,9 @@ from simmpp.sweeps.sweep import Watcher, run_sweep
 CONFIG = {
     "scene": "mountain:4",
     "picture": {"resolution": 64},
-    "seeds": [0, 1, 2],
+    "seeds": [0],
+    "tolerance": "3%",
+    "max_seeds": 12,
     "policy": ["ray", "concurrent"],
     "sweep": {"processors": [8, 32], "memory.fraction": [0.1, 0.4]},
 }
@@ -82,14 +84,14 @@ def test_a_killed_worker_changes_nothing(cluster: Cluster, tmp_path: Path) -> No
     killer = Killer(cluster.workers[0])
     run_sweep(CONFIG, out=tmp_path / "together", cluster=cluster.address, watcher=killer)
     assert cluster.workers[0].poll() is not None, "no worker was killed"
-    assert killer.finished == 36
+    assert killer.finished > 2 * 2 * 3 * 8, "no point asked for more than its first seeds"
     for name in TABLES:
         alone, together = tmp_path / "alone" / name, tmp_path / "together" / name
         assert alone.read_bytes() == together.read_bytes()
 
 
 def test_no_cluster_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simmpp.sweeps.crew.CONNECT_S", 1)
+    monkeypatch.setattr("simmpp.sweeps.cluster.CONNECT_S", 1)
     for address in ("tcp://127.0.0.1:9", "nonsense://x", ""):
         with pytest.raises(ConfigError, match="--cluster: value ") as error:
             run_sweep(CONFIG, cluster=address)

@@ -1,6 +1,7 @@
 """Workers that die: their tasks are run again, and only the one at fault fails."""
 
 import dataclasses
+from collections import deque
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 
@@ -47,7 +48,7 @@ class Renewing(Crew):
 def test_only_the_task_that_kills_its_worker_fails(numbers: set[int], in_flight: int) -> None:
     tasks = [dataclasses.replace(SOME_TASK, key=str(n)) for n in range(12)]
     deadly = {str(n) for n in numbers}
-    found = list(outcomes(tasks, Renewing(Fragile(deadly), in_flight), None))
+    found = list(outcomes(deque(tasks), Renewing(Fragile(deadly), in_flight), None))
     assert sorted(o.key for o in found) == sorted(task.key for task in tasks)
     assert {o.key: o.error for o in found if o.error} == dict.fromkeys(deadly, WORKER_DIED)
 

@@ -19,7 +19,6 @@ class Message:
     load: int
     """The sender's load at packing, without the rays in this message."""
     departure: int
-    arrival: int
     obj: int = -1
     rays: tuple[int, ...] = ()
 

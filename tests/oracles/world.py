@@ -10,6 +10,7 @@ from typing import Any
 
 from oracles.costs import copy_ps, network_ps
 from oracles.ledger import Ledger
+from oracles.network import Network
 from oracles.rules import Rules
 from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
@@ -31,11 +32,13 @@ class World:
     rules: Rules
     queue: list[tuple[Any, ...]] = field(default_factory=list)
     """A heap of (key, what happens, to whom); keys are the order of ties and never equal:
-    arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0)."""
+    arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
+    departures, with contention, (time, 2, source, send number, 0)."""
     ledger: Ledger = field(default_factory=Ledger)
 
     def __post_init__(self) -> None:
         self.nb = self.placement.processors
+        self.network = Network(self.machine)
         self.owners = [int(o) for o in self.placement.owners]
         self.object_bytes = [int(b) for b in self.workload.object_bytes]
         self.rays_left = self.workload.n_rays
@@ -79,9 +82,9 @@ class World:
         rays: tuple[int, ...] = (),
     ) -> int:
         """Pack a message and let it depart; returns the time of that."""
+        begin = clock
         cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
         clock = self.pay("communication", pe, clock, cost)
-        arrival = clock + network_ps(self.machine, pe.number, destination, payload_bytes)
         message = Message(
             kind=kind,
             source=pe.number,
@@ -90,7 +93,6 @@ class World:
             payload_bytes=payload_bytes,
             load=pe.load,
             departure=clock,
-            arrival=arrival,
             obj=obj,
             rays=rays,
         )
@@ -99,9 +101,23 @@ class World:
         if kind in (OBJECT, RAYS):
             pe.partners.add(destination)
         self.ledger.sent.append(message)
-        key = (arrival, 0, destination, pe.number, message.send_number)
-        heapq.heappush(self.queue, (key, "arrive", message))
+        self.ledger.did(pe, begin, "send", clock, message)
+        if self.machine.contention == "links":
+            key = (clock, 2, pe.number, message.send_number, 0)
+            heapq.heappush(self.queue, (key, "depart", message))
+        else:
+            flight = network_ps(self.machine, pe.number, destination, payload_bytes)
+            self.let_arrive(clock + flight, message)
         return clock
+
+    def depart(self, time: int, message: Message) -> None:
+        """A message enters a network with contention."""
+        self.let_arrive(self.network.arrival(message), message)
+
+    def let_arrive(self, time: int, message: Message) -> None:
+        """A message travels, and will be there at a time."""
+        key = (time, 0, message.destination, message.source, message.send_number)
+        heapq.heappush(self.queue, (key, "arrive", message))
 
     def sample_rays(self, pe: PE) -> None:
         """Note how many rays a PE holds."""

@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import gzip
 import json
 import os
 import subprocess
@@ -14,7 +15,7 @@ from click.testing import CliRunner, Result
 from simmpp.cli import main
 from simmpp.compiled import cache_folder
 from simmpp.errors import ModelError
-from simmpp.sweeps.rows import COLUMNS
+from simmpp.sweeps.columns import COLUMNS
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 """Compiled code is shared with the other tests; workloads are not."""
@@ -160,7 +161,7 @@ def test_mistakes() -> None:
         "simmpp: error: --set engine: value"
     )
     assert refused("run", "c.yaml", "--set", "method=analytical").startswith(
-        "simmpp: error: method"
+        "simmpp: error: --set method: value 'analytical': expected simulate here"
     )
     assert refused("run", "c.yaml", "--set", "scene=bad.nff").startswith(
         "simmpp: error: bad.nff:2:"
@@ -218,8 +219,10 @@ def test_run_says_that_it_does_not_sweep() -> None:
     done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
     assert done.exit_code == 0, done.output
     assert done.stderr == (
-        "simmpp: run simulates one point; the values under 'sweep' are for simmpp sweep\n"
+        "simmpp: run simulates one point with one seed; the values under 'sweep', tolerance and "
+        "refine are for simmpp sweep\n"
     )
+    assert simmpp("run", "c.yaml", "--set", "tolerance=2%").stderr == done.stderr
 
 
 def test_one_of_something_is_no_plural() -> None:
@@ -296,3 +299,42 @@ def test_help_imports_nothing_heavy() -> None:
 
 def test_version() -> None:
     assert simmpp("--version").stdout.startswith("simmpp, version ")
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--timeline", "t.txt"], "--timeline: value 't.txt': expected a file .json, .json.gz or"),
+        (["--timeline-window", "0 ms:5 ms"], "--timeline-window: expected --timeline FILE beside"),
+        (["--timeline", "t.json", "--timeline-window", "5 ms"], "value '5 ms': expected START:END"),
+        (["--timeline", "t.json", "--timeline-window", "2 ms:1 ms"], "START before END"),
+        (["--timeline", "t.json", "--timeline-window", "2:3"], "--timeline-window: value '2': exp"),
+        (["--timeline", "no/t.json"], "expected a file in an existing folder"),
+    ],
+)
+def test_a_timeline_that_cannot_be(options: list[str], problem: str) -> None:
+    assert problem in refused("run", "c.yaml", *options)
+
+
+def test_run_writes_a_timeline_of_every_policy() -> None:
+    assert simmpp("run", "c.yaml", "--timeline", "t.json").exit_code == 0
+    events = json.loads(Path("t.json").read_text())["traceEvents"]
+    processes = [e["args"]["name"] for e in events if e.get("name") == "process_name"]
+    assert processes == ["object", "ray", "concurrent", "replicated"]
+    window = ("--timeline", "w.json.gz", "--timeline-window", "0 ms:10 us")
+    assert simmpp("run", "c.yaml", *window).exit_code == 0
+    cut = json.loads(gzip.decompress(Path("w.json.gz").read_bytes()))["traceEvents"]
+    assert max(event.get("ts", 0) for event in cut) <= 10
+    assert max(event.get("ts", 0) for event in events) > 10
+
+
+def test_run_draws_figures_of_every_policy() -> None:
+    command = ("run", "c.yaml", "--set", "policy={name: object, label: 'by o/t'}", "--figures", "f")
+    assert simmpp(*command, "--timeline", "t.parquet").exit_code == 0
+    names = ("activity", "memory", "pixels", "progress", "torus", "traffic")
+    for policy in ("by-o-t", "replicated"):
+        for name in names:
+            assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
+            assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
+    assert len(list(Path("f").iterdir())) == 2 * 2 * len(names)
+    assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")

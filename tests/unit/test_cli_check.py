@@ -71,7 +71,7 @@ def read(path: Path) -> list[dict[str, str]]:
 def differing_cells(out: str) -> set[tuple[str, ...]]:
     """Key, column, baseline and present value of every integer that isn't the committed one."""
     pairs = zip(read(COMMITTED / "results.csv"), read(Path(out, "results.csv")), strict=True)
-    keys = ("scene", "processors", "fraction", "policy", "seed")
+    keys = ("scene", "processors", "fraction", "policy", "seed", "method")
     return {
         (*(before[key] for key in keys), column, before[column], now[column])
         for before, now in pairs
@@ -278,7 +278,7 @@ def test_failed_points_fail_the_check_and_are_no_baseline(monkeypatch: pytest.Mo
     def simulate(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("simmpp.sweeps.worker.simulate", simulate)
+    monkeypatch.setattr("simmpp.sweeps.simulating.simulate", simulate)
     done = check()
     assert done.exit_code == 1
     assert "out of memory" in done.stdout

@@ -55,6 +55,7 @@ def test_the_case_itself_runs() -> None:
         ("placement", "processors", lambda n: n + 1),
         ("machine", "quantum", lambda n: 0),
         ("machine", "ray_ps", lambda n: -1),
+        ("machine", "contention", lambda word: "link"),
         ("machine", "test", lambda cost: TestCost(1, 1, -1, 1)),
         ("machine", "unpack", lambda costs: (*costs[:3], CopyCost(0, -1))),
         ("policy", "batch", lambda n: 0),

@@ -1,5 +1,7 @@
 """The package's machines: complete, sourced, and overridden key by key."""
 
+from dataclasses import replace
+
 import pytest
 
 from simmpp.errors import ConfigError
@@ -60,6 +62,13 @@ def test_overrides_change_what_they_name_only() -> None:
     assert made.sources["pack.object.fixed"].startswith("ESTIMATE")
 
 
+def test_contention_is_a_choice_beside_the_constants() -> None:
+    assert machine("t3e").contention == "none"
+    made = machine("t3e", {"contention": "links"})
+    assert made == replace(machine("t3e"), contention="links")
+    assert "contention" not in made.sources
+
+
 def test_one_time_for_all_tests_replaces_the_kinds() -> None:
     assert machine("t3e", {"test": "2 us"}).test == TestCost(2_000_000, *[2_000_000] * 3, 0)
 
@@ -83,6 +92,7 @@ def test_shapes() -> None:
         ),
         ({"overrides": {"ray": 6}}, "ray: value 6: expected a time such as '12 us'"),
         ({"overrides": {"test": {"sphere": "1"}}}, "test.sphere: value '1': expected a time"),
+        ({"overrides": {"contention": "link"}}, "contention: value 'link': expected none or links"),
         ({"overrides": {"quantum": 0}}, "quantum: value 0: expected an integer from 1"),
         ({"overrides": {"shape": [2, 2]}}, "shape: value [2, 2]: expected three positive"),
     ],

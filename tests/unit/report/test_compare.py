@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from simmpp.report.compare import Move, Tables, lines, moves, percent, summary
+from simmpp.sweeps.columns import COLUMNS
 from simmpp.sweeps.profits import profit_columns
-from simmpp.sweeps.rows import COLUMNS
 
 TWO_PERCENT = {"time_profit": Fraction(2, 100)}
 
@@ -40,9 +40,7 @@ def test_equal_tables_have_no_moves_whatever_the_engine() -> None:
     assert moves(old, tables([result(engine="simpy")], [profit()]), {}) == []
 
 
-@pytest.mark.parametrize(
-    "column", ["makespan_ps", "events", "effective_fraction", "error", "method"]
-)
+@pytest.mark.parametrize("column", ["makespan_ps", "events", "effective_fraction", "error"])
 def test_every_integer_counts(column: str) -> None:
     (move,) = moves(tables([result()], []), tables([result(**{column: 2})], []), {})
     assert (move.measure, move.now, move.of_curve) == (column, "2", False)

@@ -199,7 +199,7 @@ def test_every_key_of_concurrent_dataflow_is_read(key: str, values: list[object]
 
 
 def test_neighbouring_tasks_share_their_placement() -> None:
-    sweep = {"policy.batch": [1, 9], "memory.fraction": [0.1, 0.5, 1]}
+    sweep = {"policy.batch": [1, 9], "memory.fraction": [0.1, 0.5, 0.9]}
     tasks = plan(config_from_mapping({**BASE, "sweep": sweep, "seeds": [0, 1]})).tasks
     keys = [task.placement_key for task in tasks]
     changes = sum(a != b for a, b in pairwise(keys))
@@ -253,14 +253,15 @@ def test_axes_need_no_configuration() -> None:
     ]  # fmt: skip
 
 
-def test_only_simulations_with_given_seeds() -> None:
-    for more, problem in (
-        ({"method": "analytical"}, "method"),
-        ({"tolerance": "2%"}, "tolerance"),
-        ({"max_seeds": 9}, "max_seeds"),
-    ):
-        config = config_from_mapping({**BASE, **more})
-        with pytest.raises(ConfigError, match=problem):
-            plan(config)
-        with pytest.raises(ConfigError, match=problem):
-            make_point(config, workload_of(config))
+def test_seeds_and_refinement_need_a_tolerance() -> None:
+    for more in ({"max_seeds": 9}, {"refine": True}):
+        with pytest.raises(ConfigError, match="goes with a tolerance"):
+            config_from_mapping({**BASE, **more})
+    with pytest.raises(ConfigError, match="max_seeds is 8, and 9 seeds are given"):
+        config_from_mapping({**BASE, "tolerance": "2%", "max_seeds": 8, "seeds": list(range(9))})
+
+
+def test_a_placement_is_only_drawn_for_what_places() -> None:
+    config = config_from_mapping({**BASE, "method": "analytical"})
+    with pytest.raises(ConfigError, match="method: value 'analytical': expected simulate here"):
+        make_point(config, workload_of(config))

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from simmpp.sweeps.profits import best_policy, interval, profit_columns, profit_rows
+from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.profits import best_policy, profit_columns, profit_rows
 from simmpp.sweeps.tables import Row
 
 

@@ -3,14 +3,14 @@
 import pytest
 
 from simmpp.errors import ConfigError
-from simmpp.sweeps.crew import crew_for
+from simmpp.sweeps.hiring import crew_for
 
 
 @pytest.mark.parametrize("address", ["foo", "tcp://127.0.0.1:9", "nonsense://x", ""])
 def test_no_client_is_made_for_no_cluster(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
     made: list[object] = []
-    monkeypatch.setattr("simmpp.sweeps.crew.CONNECT_S", 1)
+    monkeypatch.setattr("simmpp.sweeps.cluster.CONNECT_S", 1)
     monkeypatch.setattr(distributed, "Client", lambda *address, **options: made.append(address))
     with pytest.raises(ConfigError, match="--cluster: value "):
         crew_for(1, address)

@@ -1,0 +1,100 @@
+"""``simmpp bench``: what does a quicker method cost in accuracy, and what does accuracy cost?"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from simmpp.commands.options import NamedPath
+
+if TYPE_CHECKING:
+    from simmpp.report.rungs import Rung
+
+RUNS_FAILED = 1
+
+
+@click.command("bench")
+@click.argument("config_path", metavar="CONFIG", type=NamedPath())
+@click.option(
+    "--seeds",
+    type=click.IntRange(4, 10_000),
+    default=32,
+    show_default=True,
+    metavar="N",
+    help="Simulations of each point at full fidelity, whose mean is the reference.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 4096),
+    help="Processes on this machine; 1 disturbs no times.  [default: one for each core]",
+)
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Set a dotted key; repeatable.",
+)
+@click.option(
+    "--out",
+    type=NamedPath(),
+    help="Folder of bench.csv and the figure.  [default: results/NAME-OF-CONFIG]",
+)
+def bench_command(
+    config_path: Path,
+    seeds: int,
+    workers: int | None,
+    overrides: tuple[str, ...],
+    out: Path | None,
+) -> None:
+    """Measure run time against error over the points of a configuration.
+
+    Each method (the analytical models, simulation) is tried at every point, simulation with 1, 2,
+    4, ... seeds. Errors are against the mean of the other simulated seeds; times are the
+    processor's, tracing apart. Writes bench.csv, bench.png and bench.svg. The same command
+    continues what was interrupted. Exits with 1 if a run failed.
+    """
+    from simmpp.commands.files import folder
+    from simmpp.commands.sweep import available_cores
+    from simmpp.commands.sweeping import progress_of_sweep
+    from simmpp.commands.terminal import announce_compilation, notice
+    from simmpp.report.bench import bench
+    from simmpp.sweeps.config import load_config
+
+    config = load_config(config_path, overrides)
+    out = Path("results", config_path.stem) if out is None else out
+    folder(out, "--out")
+    announce_compilation()
+    with progress_of_sweep() as watcher:
+        done = bench(
+            config, seeds=seeds, out=out, workers=workers or available_cores(), watcher=watcher
+        )
+    _print(done.rungs)
+    for path in done.files:
+        click.echo(f"wrote {path}")
+    for error in sorted(set(done.failed)):
+        notice(f"{done.failed.count(error)} runs failed: {error}")
+    sys.exit(RUNS_FAILED if done.failed else 0)
+
+
+def _print(rungs: Sequence[Rung]) -> None:
+    from simmpp.commands.terminal import output, table
+
+    shown = [
+        {
+            "scene": rung.scene,
+            "method": rung.method,
+            "seeds": rung.seeds,
+            "s per point": f"{rung.seconds:.4f}",
+            **{
+                name.replace("_", " "): f"{rung.error[name]:.1%} (at worst {rung.worst[name]:.1%})"
+                for name in rung.error
+            },
+        }
+        for rung in rungs
+    ]
+    output().print(table(shown))

@@ -1,0 +1,68 @@
+"""Could any renderer use this scene? Readers of files know; of scenes that a caller made, ask here.
+
+Coordinates that are not finite are found where they are measured, by the tracer's frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from simmpp.errors import SceneError
+from simmpp.scene.scene import Material, MeshPart, Polygon, Scene, SceneObject
+
+
+def check_scene(scene: Scene) -> None:
+    """Raise SceneError for a material, a colour or an object that makes no sense."""
+    for number, material in enumerate(scene.materials):
+        _require(_problem_of_material(material), f"material {number}", scene.name)
+    for number, light in enumerate(scene.lights):
+        _require(_problem_of_numbers(light.colour), f"the colour of light {number}", scene.name)
+    _require(_problem_of_numbers(scene.background), "the background", scene.name)
+    for number, thing in enumerate(scene.objects):
+        problem = _problem_of_object(thing, len(scene.materials))
+        _require(problem, f"object {number}", scene.name)
+
+
+def _require(problem: str, what: str, name: str) -> None:
+    if problem:
+        raise SceneError(f"{what} {problem}", where=name)
+
+
+def _problem_of_material(m: Material) -> str:
+    numbers = (*m.colour, m.kd, m.ks, m.shine, m.transmittance)
+    if problem := _problem_of_numbers(numbers):
+        return problem
+    if m.transmittance > 1:
+        return f"has transmittance {m.transmittance:g}, expected at most 1"
+    if m.transmits and not 0.0 < m.ior < math.inf:
+        return f"transmits, its ior is {m.ior:g}, expected above 0"
+    return ""
+
+
+def _problem_of_numbers(numbers: Iterable[float]) -> str:
+    wrong = [number for number in numbers if not 0 <= number < math.inf]
+    return f"has the number {wrong[0]:g}, expected 0 or a finite number above" if wrong else ""
+
+
+def _problem_of_object(thing: SceneObject, n_materials: int) -> str:
+    if not 0 <= thing.material < n_materials:
+        return f"has material {thing.material}, expected one of the {n_materials} materials"
+    if isinstance(thing, Polygon | MeshPart):
+        shape = np.shape(thing.vertices)
+        if len(shape) != 2 or shape[1] != 3:
+            return f"has vertices of shape {shape}, expected (n, 3)"
+        if isinstance(thing, Polygon) and shape[0] < 3:
+            return f"is a polygon of {shape[0]} vertices, expected at least 3"
+    return _problem_of_faces(thing) if isinstance(thing, MeshPart) else ""
+
+
+def _problem_of_faces(part: MeshPart) -> str:
+    faces, n = np.asarray(part.faces), len(part.vertices)
+    if faces.ndim != 2 or faces.shape[1] != 3 or not len(faces) or faces.dtype.kind not in "iu":
+        return f"has faces of shape {faces.shape} {faces.dtype}, expected (m, 3) integers, m > 0"
+    if faces.min() < 0 or faces.max() >= n:
+        return f"has a face that names a vertex outside 0 ... {n - 1}"
+    return ""

@@ -1,0 +1,35 @@
+"""The columns of ``results.csv``, which every later step reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+KEYS = ("scene", "processors", "fraction", "effective_fraction", "policy", "seed")
+METHOD = "method"
+"""A key as well where a sweep changes it."""
+NUMBERS = (
+    "makespan_ps",
+    "messages",
+    "request_messages",
+    "object_messages",
+    "ray_messages",
+    "load_messages",
+    "bytes_sent",
+    "rays",
+    "tests",
+    "rays_sent",
+    "objects_fetched",
+    "compute_ps",
+    "communication_ps",
+    "waiting_ps",
+    "peak_rays",
+    "peak_bytes",
+    "events",
+)
+"""Integers of a result; times of PEs are sums over them. Empty where the method does not know."""
+COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
+
+
+def result_columns(further: Sequence[str] = ()) -> tuple[str, ...]:
+    """The columns of ``results.csv`` with those of a sweep's further keys."""
+    return (*KEYS, *further, *COLUMNS[len(KEYS) :])
