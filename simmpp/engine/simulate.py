@@ -125,8 +125,6 @@ def _conclude(
         compute_ps=compute_ps,
         communication_ps=communication_ps,
         waiting_ps=waiting_ps,
-        peak_rays=int(state.pes["peak_rays"].max()),
-        peak_bytes=int(state.pes["peak_bytes"].max()),
         pe_peak_rays=state.pes["peak_rays"].copy(),
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
