@@ -122,7 +122,8 @@ def _warning(folder: Folder) -> str:
 def _verdicts(folder: Folder) -> str:
     """How many claims hold, in part, and do not."""
     counts = Counter(claim["holds"] for claim in folder.claims)
-    parts = [f"{counts[kind]} {kind}" for kind in (HOLDS, IN_PART, DOES_NOT) if counts[kind]]
+    words = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
+    parts = [f"{counts[k]} {one if counts[k] == 1 else more}" for k, (one, more) in words.items()]
     return f"Of {len(folder.claims)} claims: {', '.join(parts)}."
 
 

@@ -95,7 +95,7 @@
     if (!element.on) near.observe(element);  // plotly gives it "on" when it is drawn first
     else draw(element);
   };
-  // Only what comes near the window is drawn: pages with many panels open as fast as others.
+  // What comes near the window is drawn first: pages with many panels open as fast as others.
   const near = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) if (isIntersecting) begin(target);
   }, { rootMargin: "800px" });
@@ -107,6 +107,13 @@
       if (number !== undefined) document.dispatchEvent(new CustomEvent("chosen", { detail: number }));
     });
   };
+  // The rest follows while there is nothing else to do.
+  const idle = window.requestIdleCallback ?? ((task) => setTimeout(task, 50));
+  const beginRest = () => {
+    const next = [...charts.keys()].find((element) => !element.on);
+    if (next) { begin(next); idle(beginRest); }
+  };
+  addEventListener("load", () => idle(beginRest));
   const drop = (element) => { near.unobserve(element); Plotly.purge(element); charts.delete(element); };
 
   // A legend for all panels of a figure: its buttons hide and show curves.
