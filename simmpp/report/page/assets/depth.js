@@ -78,7 +78,10 @@
     show(find(id), figure);
   };
   const shares = (numbers) => {
-    const sums = numbers.map((n) => Object.values(depth.accounts).map((column) => mean(n, column) || 0));
+    const sums = numbers.map((n) => {
+      const each = Object.values(depth.accounts).map((column) => mean(n, column));
+      return each.includes(null) ? each.map(() => 0) : each;  // a model knows no more than the computing
+    });
     const whole = sums.map((each) => each.reduce((sum, value) => sum + value, 0) || 1);
     return Object.fromEntries(Object.keys(depth.accounts).map((part, k) => [part, sums.map((each, n) => (100 * each[k]) / whole[n])]));
   };
