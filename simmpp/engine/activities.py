@@ -135,9 +135,9 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     tests, done = 0, s.rays_done
     while tests < s.quantum and pe.n_ready > 0:
         ray = pe.ready_first
-        end = itinerary_offsets(s)[ray + 1]
-        while rays(s)[ray].at < end:
-            missing = itinerary_objects(s)[rays(s)[ray].at]
+        first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
+        while first + rays(s)[ray].tested < end:
+            missing = itinerary_objects(s)[first + rays(s)[ray].tested]
             if rays(s)[ray].granted == 0 and not is_in_memory(s, me, missing):
                 pop_ready(s, me)
                 file_ray(s, me, ray, missing)
@@ -165,7 +165,7 @@ def _test(s: Run, me: int, ray: int, tested: int) -> None:
         tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, tested
     s.tests += 1
     r = rays(s)[ray]
-    r.at += 1
+    r.tested += 1
     if r.granted or s.transient > 0:
         want = find(wants(s), me * s.n_objects + tested)
         if want != NONE:

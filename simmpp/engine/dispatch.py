@@ -11,7 +11,6 @@ transfer makes at least one test, and stale loads can herd rays but not bounce t
 from __future__ import annotations
 
 from simmpp.compiled import njit_reading as njit
-from simmpp.engine.hops import note_hops
 from simmpp.engine.layout import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.memory import (
     exchanged,
@@ -63,8 +62,6 @@ def _send_rays(s: Run, me: int, nothing_else: int, now_ps: int) -> int:
         seen = (pe.load, known_load, age_ps, waiting, nothing_else, s.min_load)
         if allows(s.may_send, seen):
             head, tail = _take_rays(s, me, row)
-            if s.record_hops:
-                note_hops(s, head, waiting, me, owner)
             pe.load -= waiting
             s.rays_sent += waiting
             n_bytes = waiting * s.ray_bytes

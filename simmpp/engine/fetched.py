@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from simmpp.compiled import njit_reading as njit
-from simmpp.engine.hops import note_hops
 from simmpp.engine.layout import Run
-from simmpp.engine.memory import object_bytes, owners, pes, rays, recent, want_rows, wants
+from simmpp.engine.memory import object_bytes, pes, rays, recent, want_rows, wants
 from simmpp.engine.ready import make_ready
 from simmpp.engine.tables import append, find, first, unlink
 from simmpp.engine.waiting import drop_if_idle, set_sendable
@@ -38,18 +37,21 @@ def _release(s: Run, me: int, row: int) -> None:
     n = want.n if s.merge_requests else 1
     head = want.first
     tail = head
-    rays(s)[tail].granted = 1
+    _grant(s, tail, want.hops)
     for _ in range(n - 1):
         tail = rays(s)[tail].next
-        rays(s)[tail].granted = 1
-    if s.record_hops:
-        owner = owners(s)[want.key % s.n_objects]
-        note_hops(s, head, n, me, owner)
-        note_hops(s, head, n, owner, me)
+        _grant(s, tail, want.hops)
     want.first = rays(s)[tail].next
     want.n -= n
     want.pinned += n
     make_ready(s, me, head, tail, n)
+
+
+@njit
+def _grant(s: Run, ray: int, hops: int) -> None:
+    """What the ray was filed for has come to it, the same way back."""
+    rays(s)[ray].granted = 1
+    rays(s)[ray].hops += hops
 
 
 @njit

@@ -40,9 +40,10 @@ PE = np.dtype(
 )
 RAY = np.dtype(
     [
-        ("at", "i8"),  # next entry of itinerary_objects
+        ("tested", "i4"),  # objects of its itinerary that it has been tested against
         ("next", "i4"),  # next ray of the list that this ray is in
         ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("hops", "i4"),  # with record_hops: links crossed for it
     ],
     align=True,
 )
@@ -59,6 +60,7 @@ WANT = np.dtype(
         ("pinned", "i4"),  # released rays that have not made their test yet
         ("transient", "i4"),  # 1: in transient memory
         ("partner", "i4"),  # row of the owner in ``partners``, if the policy sends
+        ("hops", "i4"),  # with record_hops: links to the owner
     ],
     align=True,
 )
@@ -165,7 +167,6 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "tested_rays": I4,
     "tested_objects": I4,
     "free_ps": I8,  # from when on each link and port is free; empty without contention
-    "ray_hops": I4,
     "log": EVENT,
 }
 """Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""

@@ -219,12 +219,6 @@ def free_ps(s: Run) -> Any:
 
 
 @njit
-def ray_hops(s: Run) -> Any:
-    """(n,) int32, or empty."""
-    return carray(_pointer(s.ray_hops_at), s.ray_hops_n, I4)
-
-
-@njit
 def log(s: Run) -> Any:
     """(capacity,) EVENT, or empty."""
     return carray(_pointer(s.log_at), s.log_n, EVENT)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simmpp.compiled import njit_reading as njit
 from simmpp.engine.layout import NONE, Run
-from simmpp.engine.memory import child_offsets, itinerary_offsets, pes, rays
+from simmpp.engine.memory import child_offsets, pes, rays
 
 
 @njit
@@ -42,7 +42,7 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     child, end = child_offsets(s)[ray], child_offsets(s)[ray + 1]
     if child < end:
         for each in range(child, end):
-            rays(s)[each].at, rays(s)[each].next = itinerary_offsets(s)[each], each + 1
+            rays(s)[each].next = each + 1
         make_ready(s, me, child, end - 1, end - child)
     pe.load += end - child - 1
     pe.peak_rays = max(pe.peak_rays, pe.load)

@@ -21,7 +21,7 @@ from simmpp.engine.layout import (
     Run,
 )
 from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
-from simmpp.engine.memory import itinerary_offsets, pes, rays
+from simmpp.engine.memory import pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
 from simmpp.machine.links import LINKS, ROWS_PER_PE
@@ -121,7 +121,6 @@ def new_state(
     arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays["ray_hops"] = np.zeros(workload.n_rays if record_hops else 0, np.int32)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": record_tests,
@@ -241,7 +240,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pes(s)[me].ready_last = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
-        rays(s)[ray].at, rays(s)[ray].next = itinerary_offsets(s)[ray], NONE
+        rays(s)[ray].next = NONE
         if pe.ready_first == NONE:
             pe.ready_first = ray
         else:
