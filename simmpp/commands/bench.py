@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, available_cores, set_option, workers_option
 
 if TYPE_CHECKING:
     from simmpp.report.rungs import Rung
@@ -27,18 +27,8 @@ RUNS_FAILED = 1
     metavar="N",
     help="Simulations of each point at full fidelity, whose mean is the reference.",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(1, 4096),
-    help="Processes on this machine; 1 disturbs no times.  [default: one for each core]",
-)
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key; repeatable.",
-)
+@workers_option("Processes on this machine; 1 disturbs no times.  [default: one for each core]")
+@set_option("Set a dotted key; repeatable.")
 @click.option(
     "--out",
     type=NamedPath(),
@@ -59,7 +49,6 @@ def bench_command(
     continues what was interrupted. Exits with 1 if a run failed.
     """
     from simmpp.commands.files import folder
-    from simmpp.commands.sweep import available_cores
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation, notice
     from simmpp.report.bench import bench

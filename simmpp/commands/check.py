@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, available_cores, set_option, workers_option
 
 if TYPE_CHECKING:
     from simmpp.report.baseline import Sweep
@@ -40,16 +40,10 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits.png"
     type=NamedPath(),
     help="Folder for what came out: the tables, moved.csv, and profits.png over the baseline's.",
 )
-@click.option("--workers", type=click.IntRange(1, 4096), help="Processes, as for sweep.")
+@workers_option("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
 @click.option("--engine", help="The event loop; it changes no integer.")
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key: what would move? The baseline stays that of CONFIG as it is.",
-)
+@set_option("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
 def check_command(
     config_path: Path,
     baseline_path: Path,
@@ -90,7 +84,6 @@ def check_command(
 
 def _swept(config: Config, workers: int | None, cluster: str | None, into: Path) -> Sweep:
     """The sweep, always run anew."""
-    from simmpp.commands.sweep import available_cores
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.report.baseline import read_sweep
     from simmpp.sweeps.sweep import run_sweep

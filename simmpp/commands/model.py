@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import FiniteRange, NamedPath
+from simmpp.commands.options import FiniteRange, NamedPath, set_option
 
 if TYPE_CHECKING:
     from simmpp.model.analytical import Makespans
@@ -17,13 +17,7 @@ if TYPE_CHECKING:
 
 @click.command("model")
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key; method=analytical-measured feeds the model with measured r.",
-)
+@set_option("Set a dotted key; method=analytical-measured feeds the model with measured r.")
 @click.option(
     "--ratio",
     "ratio_texts",

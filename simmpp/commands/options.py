@@ -1,8 +1,10 @@
-"""Types of the commands' options that refuse what click's own let through."""
+"""Options that several commands have, and types that refuse what click's own let through."""
 
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +46,23 @@ class NamedPath(click.Path):
         if value == "":
             raise ConfigError(f"{_named(param)}: value '': expected the name of a file or folder")
         return super().convert(value, param, ctx)
+
+
+def set_option(help_text: str) -> Callable[[Any], Any]:
+    """``--set KEY=VALUE``, which the command gets as ``overrides``."""
+    return click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=help_text)
+
+
+def workers_option(help_text: str) -> Callable[[Any], Any]:
+    """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
+    return click.option("--workers", type=click.IntRange(1, 4096), help=help_text)
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def window_of(text: str, option: str) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, available_cores, workers_option
 
 if TYPE_CHECKING:
     from simmpp.report.reproduce import Reproduction
@@ -31,11 +31,7 @@ POINTS_FAILED = 1
     metavar="N",
     help="Draws of each point.  [default: the experiments' 8]",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(1, 4096),
-    help="Processes on this machine.  [default: one for each core]",
-)
+@workers_option("Processes on this machine.  [default: one for each core]")
 @click.option(
     "--resolution",
     type=click.IntRange(1, 16384),
@@ -52,7 +48,6 @@ def reproduce_command(
     resolution, add to what is there. Exits with 1 if a point failed.
     """
     from simmpp.commands.files import folder
-    from simmpp.commands.sweep import available_cores
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation
     from simmpp.report.reproduce import reproduce

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath, window_of
+from simmpp.commands.options import NamedPath, set_option, window_of
+from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
     from rich.progress import TaskID
 
-    from simmpp.engine.log import Sink
-    from simmpp.policy.parameters import PolicyParameters
     from simmpp.sweeps.config import Config
     from simmpp.sweeps.point import Point, PolicyRun
 
@@ -28,13 +24,7 @@ VERIFY_FAILED = 1
 @click.command("run")
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option("--engine", help="The event loop (see the key engine).")
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.",
-)
+@set_option("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
 @click.option("--out", type=NamedPath(), help="Folder for run.json and results.csv.")
 @click.option("--picture", type=NamedPath(), help="Write the picture as PNG.")
 @click.option(
@@ -86,7 +76,7 @@ def run_command(
     writable(picture, "--picture", ".png")
     folder(out, "--out")
     window_ps = None if window is None else window_of(window, "--timeline-window")
-    _check_timeline(timeline, window_ps)
+    check_timeline(timeline, window_ps)
     folder(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
@@ -96,15 +86,6 @@ def run_command(
         )
     looks = Looks(picture, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
-
-
-class Looks(NamedTuple):
-    """What is to be written for people to look at."""
-
-    picture: Path | None
-    timeline: Path | None
-    window_ps: tuple[int, int] | None
-    figures: Path | None
 
 
 def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None:
@@ -122,7 +103,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         _write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
     try:
-        with _recorders(point, looks) as recorders:
+        with recorders_of(point, looks) as recorders:
             _simulate(point, runs, recorders, record_tests=verify)
     finally:
         if out and runs:
@@ -130,52 +111,6 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
-
-
-def _check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
-    from simmpp.commands.files import writable
-    from simmpp.errors import ConfigError
-    from simmpp.report.timeline.recorder import SUFFIXES
-
-    if path is None and window is not None:
-        raise ConfigError("--timeline-window: expected --timeline FILE beside it")
-    if path is not None and not path.name.lower().endswith(SUFFIXES):
-        expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
-        raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
-    writable(path, "--timeline")
-
-
-class Recorder(Protocol):
-    """Watches the runs of a point, one after the other."""
-
-    needs_hops: bool
-    """Whether links are to be counted for each ray."""
-
-    def begin(self, policy: PolicyParameters) -> Sink:
-        """What gets the event log of a policy's run."""
-
-    def end(self, run: PolicyRun) -> None:
-        """The run that was begun last is over."""
-
-
-@contextmanager
-def _recorders(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
-    from simmpp.report.timeline.slices import Window
-
-    with ExitStack() as stack:
-        recorders: list[Recorder] = []
-        if looks.timeline is not None:
-            from simmpp.report.timeline.recorder import TimelineRecorder
-
-            window = Window(*looks.window_ps) if looks.window_ps else None
-            timeline = TimelineRecorder(looks.timeline, point.machine, window)
-            stack.callback(timeline.close)
-            recorders.append(timeline)
-        if looks.figures is not None:
-            from simmpp.report.motion.recorder import FiguresRecorder
-
-            recorders.append(FiguresRecorder(looks.figures, point))
-        yield recorders
 
 
 def _require_scene(config: Config, option: str) -> None:
@@ -202,20 +137,11 @@ def _simulate(
                 tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
             bars.update(tasks[title], completed=n_rays - rays_left)
 
-        def log_of(parameters: PolicyParameters) -> Sink:
-            sinks = [recorder.begin(parameters) for recorder in recorders]
-
-            def hand_on(rows: NDArray[np.void]) -> None:
-                for sink in sinks:
-                    sink(rows)
-
-            return hand_on
-
         each = run_point(
             point,
             record_tests=record_tests,
             record_hops=any(recorder.needs_hops for recorder in recorders),
-            log_of=log_of if recorders else None,
+            log_of=partial(sink_of, recorders) if recorders else None,
             progress=progress,
         )
         for run in each:

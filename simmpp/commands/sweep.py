@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Hashable, Iterator, Mapping
 from fractions import Fraction
@@ -11,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from simmpp.commands.options import FiniteRange, NamedPath
+from simmpp.commands.options import (
+    FiniteRange,
+    NamedPath,
+    available_cores,
+    set_option,
+    workers_option,
+)
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -25,19 +30,11 @@ PROFITS_SHOWN = 40
 
 @click.command("sweep")
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@click.option(
-    "--workers",
-    type=click.IntRange(1, 4096),
-    help="Processes on this machine; 1 works in this one.  [default: one for each core]",
-)
+@workers_option("Processes on this machine; 1 works in this one.  [default: one for each core]")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
 @click.option("--engine", help="The event loop.  [default: the key engine, or else compiled]")
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable.",
+@set_option(
+    "Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable."
 )
 @click.option(
     "--timeout",
@@ -98,13 +95,6 @@ def sweep_command(
             watcher=watcher,
         )
     sys.exit(_conclude(result, config.settings, out))
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _conclude(result: SweepResult, settings: Settings, out: Path) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, set_option
 
 if TYPE_CHECKING:
     from simmpp.workload.workload import Workload
@@ -18,13 +18,7 @@ OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 @click.command("workload")
 @click.argument("spec")
 @click.option("--export", type=NamedPath(), help="Write it as .parquet or .npz.")
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Set a dotted key of the configuration, such as picture.resolution=128; repeatable.",
-)
+@set_option("Set a dotted key of the configuration, such as picture.resolution=128; repeatable.")
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
 def workload_command(
     spec: str, export: Path | None, overrides: tuple[str, ...], all_objects: bool

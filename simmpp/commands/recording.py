@@ -1,0 +1,84 @@
+"""What watches a run for ``simmpp run``: the timeline and the pictures that were asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from simmpp.engine.log import Sink
+    from simmpp.policy.parameters import PolicyParameters
+    from simmpp.sweeps.point import Point, PolicyRun
+
+
+class Looks(NamedTuple):
+    """What is to be written for people to look at."""
+
+    picture: Path | None
+    timeline: Path | None
+    window_ps: tuple[int, int] | None
+    figures: Path | None
+
+
+def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
+    """Raise ConfigError unless a timeline can be written there."""
+    from simmpp.commands.files import writable
+    from simmpp.errors import ConfigError
+    from simmpp.report.timeline.recorder import SUFFIXES
+
+    if path is None and window is not None:
+        raise ConfigError("--timeline-window: expected --timeline FILE beside it")
+    if path is not None and not path.name.lower().endswith(SUFFIXES):
+        expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
+        raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
+    writable(path, "--timeline")
+
+
+class Recorder(Protocol):
+    """Watches the runs of a point, one after the other."""
+
+    needs_hops: bool
+    """Whether links are to be counted for each ray."""
+
+    def begin(self, policy: PolicyParameters) -> Sink:
+        """What gets the event log of a policy's run."""
+
+    def end(self, run: PolicyRun) -> None:
+        """The run that was begun last is over."""
+
+
+@contextmanager
+def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
+    """What writes the timeline and the pictures; the timeline is ended whatever happens."""
+    from simmpp.report.timeline.slices import Window
+
+    with ExitStack() as stack:
+        recorders: list[Recorder] = []
+        if looks.timeline is not None:
+            from simmpp.report.timeline.recorder import TimelineRecorder
+
+            window = Window(*looks.window_ps) if looks.window_ps else None
+            timeline = TimelineRecorder(looks.timeline, point.machine, window)
+            stack.callback(timeline.close)
+            recorders.append(timeline)
+        if looks.figures is not None:
+            from simmpp.report.motion.recorder import FiguresRecorder
+
+            recorders.append(FiguresRecorder(looks.figures, point))
+        yield recorders
+
+
+def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink:
+    """What hands the event log of a policy's run to all of them."""
+    sinks = [recorder.begin(policy) for recorder in recorders]
+
+    def hand_on(rows: NDArray[np.void]) -> None:
+        for sink in sinks:
+            sink(rows)
+
+    return hand_on
