@@ -1,4 +1,9 @@
-"""Links and ports that serve one message at a time: virtual cut-through with unbounded buffers.
+"""Links and ports of the torus: who a message meets on its way, and what serves one at a time.
+
+Contention is virtual cut-through with unbounded buffers (Kermani and Kleinrock 1979, Virtual
+cut-through: a new computer communication switching technique, Computer Networks 3, 267-286), the
+way dimension-order routing as on the T3E (Scott and Thorson 1996, The Cray T3E network: adaptive
+routing in a high performance 3D torus, Hot Interconnects IV; its adaptive routing is left out).
 
 The head of a message takes its source's injection port, the directed links of dimension-order
 routing and its destination's ejection port. Each serves whoever comes first: the head waits until
@@ -18,6 +23,8 @@ X, Y, Z, PORTS = 0, 2, 4, 6
 """First of the two rows of each kind in the 8 of a PE: links towards + and -, injection and
 ejection port."""
 ROWS_PER_PE = 8
+DIRECTIONS = ("+x", "-x", "+y", "-y", "+z", "-z")
+"""Of a PE's links, in the order of their rows."""
 
 
 @njit

@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.arguments import require_share, require_whole, require_word
+from simmpp.machine.work import MOST_BYTES
 
 Owners = Literal["bisection", "morton", "round_robin", "random"]
 Residents = Literal["random", "nearest", "hot"]
 Pixels = Literal["blocks", "tiles", "interleaved", "random"]
-
-MOST_BYTES = 2**62
-"""Sums of sizes are int64."""
 
 
 @dataclass(frozen=True)

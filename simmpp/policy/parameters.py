@@ -8,12 +8,10 @@ from typing import Literal, get_args
 
 from simmpp.arguments import MOST_COUNT, require_whole, require_word
 from simmpp.errors import ConfigError
+from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.units import shown
 
 LoadInfo = Literal["piggyback", "exact", "none"]
-
-MOST_REFRESH_PS = 2**62
-"""The clock's limit: added to a time, it still fits int64."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ class PolicyParameters:
         require_whole("ask_at_least", self.ask_at_least, 1)
         require_word("load_info", self.load_info, get_args(LoadInfo))
         if self.refresh_ps is not None:
-            require_whole("refresh_ps", self.refresh_ps, 0, MOST_REFRESH_PS)
+            require_whole("refresh_ps", self.refresh_ps, 0, CLOCK_LIMIT_PS)
         least = self.min_load
         if not isinstance(least, int | Fraction) or not 0 <= least <= MOST_COUNT:
             expected = f"a Fraction or an integer from 0 to {MOST_COUNT}"

@@ -24,6 +24,7 @@ from simmpp.sweeps.hiring import crew_for
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.methods import METHODS, SIMULATE
 from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.seeding import seeds_in_order
 from simmpp.sweeps.settings import long_policies
@@ -106,7 +107,7 @@ def _tried(config: Config, method: str, seeds: int) -> Config:
     ]
     chosen = seeds_in_order(config.settings.seeds, min(most, seeds))
     config = with_key(with_key(config, "method", method), "seeds", chosen)
-    return with_key(config, "policy", policies or ["object"])
+    return with_key(config, "policy", policies or [REFERENCE])
 
 
 def _time_tracing(full: Plan, journal: Journal, watcher: Watcher) -> None:

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import NamedTuple
 
-from simmpp.sweeps.point import REFERENCE
+from simmpp.sweeps.point import CEILING, REFERENCE
 from simmpp.sweeps.profits import ratio
 from simmpp.sweeps.tables import Row
 
-CONCURRENT, RAY, REPLICATED = "concurrent", "ray", "replicated"
+CONCURRENT, RAY, REPLICATED = "concurrent", "ray", CEILING
 MAKESPAN, MESSAGES = "makespan_ps", "messages"
 
 

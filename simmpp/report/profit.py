@@ -10,9 +10,8 @@ from dataclasses import dataclass
 
 from simmpp.engine.result import Result
 from simmpp.errors import ConfigError
-from simmpp.sweeps.profits import ratio as ratio
-
-REFERENCE = "object"
+from simmpp.sweeps.point import REFERENCE
+from simmpp.sweeps.profits import ratio
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from simmpp.report.profit import ratio
 from simmpp.report.summary import imbalance, utilisation
 from simmpp.sweeps.config import described
 from simmpp.sweeps.point import Point, PolicyRun, ceiling_of, reference_of
+from simmpp.sweeps.profits import ratio
 from simmpp.sweeps.rows import numbers, row
 
 LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh")

@@ -10,8 +10,8 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from simmpp.report.profit import ratio
 from simmpp.sweeps.point import Point, PolicyRun, ceiling_of, reference_of
+from simmpp.sweeps.profits import ratio
 from simmpp.units import counted, format_bytes, format_ps
 
 Cell = Callable[[PolicyRun], str]

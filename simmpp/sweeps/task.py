@@ -15,8 +15,7 @@ from simmpp.policy.table import POLICIES
 from simmpp.sweeps.config import Config
 from simmpp.sweeps.grid import GridPoint
 from simmpp.sweeps.methods import METHODS, SIMULATE
-
-NO_DATAFLOW = "replicated"
+from simmpp.sweeps.point import CEILING
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +42,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     config, policy = point.config, canonical(point.policy)
     settings = config.settings
     if settings.method == SIMULATE and _holds_everything(config):
-        policy = PolicyParameters(NO_DATAFLOW)
+        policy = PolicyParameters(CEILING)
     everywhere = POLICIES[policy.name].all_resident
     rules = config.placement_rules
     if everywhere:

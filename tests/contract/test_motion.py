@@ -12,9 +12,9 @@ from oracles.costs import hops_from, neighbours
 from simmpp.engine.layout import COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
+from simmpp.machine.links import DIRECTIONS, ROWS_PER_PE, link_towards
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS
-from simmpp.machine.torus import route
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.motion.counters import BINS, MotionRecorder
 from simmpp.report.motion.motion import Motion, marks_of, motion_of
@@ -184,21 +184,21 @@ def test_routes_are_shortest_and_go_along_x_then_y_then_z() -> None:
     for shape in ((4, 3, 2), (5, 2, 2), (1, 1, 1), (2, 1, 1), (6, 1, 3)):
         nb = shape[0] * shape[1] * shape[2]
         strides = (1, shape[0], shape[0] * shape[1])
-        links = np.zeros(nb, np.int64)
         for source in range(nb):
             far = hops_from(shape, source)
             for destination in range(nb):
-                n = route(shape, source, destination, links)
-                assert n == far[destination]
                 here, axes = source, []
-                for link in links[:n].tolist():
-                    assert link // 6 == here
-                    way, axis = steps[link % 6]
+                while here != destination:
+                    link, following = link_towards(shape, here, destination)
+                    pe, direction = divmod(link, ROWS_PER_PE)
+                    assert pe == here
+                    way, axis = steps[direction]
+                    assert DIRECTIONS[direction] == f"{'+' if way > 0 else '-'}{'xyz'[axis]}"
                     size, stride = shape[axis], strides[axis]
                     at = here // stride % size
                     there = here + ((at + way) % size - at) * stride
-                    assert there in neighbours(shape, here)
+                    assert following == there in neighbours(shape, here)
                     assert way > 0 or size > 2  # a ring of 2 uses its + link only
                     here, axes = there, [*axes, axis]
-                assert here == destination
+                assert len(axes) == far[destination]
                 assert axes == sorted(axes)

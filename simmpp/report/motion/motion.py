@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from simmpp.compiled import njit
 from simmpp.engine.residents import resident_bytes
 from simmpp.engine.result import Result
-from simmpp.machine.torus import hops, route
+from simmpp.machine.links import DIRECTIONS, ROWS_PER_PE, link_towards
+from simmpp.machine.torus import hops
 from simmpp.report.motion.counters import Counters, Ints
 from simmpp.sweeps.point import Point, PolicyRun
 
@@ -49,7 +50,7 @@ class Motion:
     hops: Ints
     """(h,): messages that crossed 0, 1, ... links."""
     link_bytes: Ints
-    """(nb, 6): bytes over each link, in the order of ``machine.torus.DIRECTIONS``."""
+    """(nb, 6): bytes over each link, in the order of ``machine.links.DIRECTIONS``."""
     load: NDArray[np.float64]
     """(nb,) float64: mean number of rays held."""
     resident_bytes: Ints
@@ -135,14 +136,14 @@ def marks_of(finished: Ints, edges_ps: Ints) -> dict[int, int]:
 @njit
 def bytes_over_links(shape: tuple[int, int, int], traffic: Ints) -> Ints:
     """Bytes over each link (nb, 6), of the bytes (nb, nb) from PE to PE."""
-    total = np.zeros(6 * len(traffic), np.int64)
-    links = np.zeros(sum(shape), np.int64)
+    total = np.zeros(ROWS_PER_PE * len(traffic), np.int64)
     for source in range(len(traffic)):
         for destination in range(len(traffic)):
-            if traffic[source, destination] > 0:
-                for i in range(route(shape, source, destination, links)):
-                    total[links[i]] += traffic[source, destination]
-    return total.reshape(-1, 6)
+            here = source
+            while here != destination and traffic[source, destination] > 0:
+                link, here = link_towards(shape, here, destination)
+                total[link] += traffic[source, destination]
+    return total.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
 
 
 @njit

@@ -12,6 +12,7 @@ from statistics import fmean
 
 from simmpp.report.page.points import Points
 from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.point import CEILING
 from simmpp.sweeps.profits import ratio
 
 SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
@@ -56,7 +57,7 @@ def replicated_policies(points: Points) -> set[str]:
     for number in scarce:
         if any(row["effective_fraction"] < 1 for row in points.runs[number]):
             titles.discard(points.profits[number]["policy"])
-    return titles | {"replicated"}
+    return titles | {CEILING}
 
 
 def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:

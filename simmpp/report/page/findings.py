@@ -21,6 +21,7 @@ from simmpp.report.page.contest import (
     replicated_policies,
 )
 from simmpp.report.page.points import Points
+from simmpp.sweeps.point import REFERENCE
 from simmpp.units import counted
 
 
@@ -82,7 +83,7 @@ def _of_these(won: Sequence[Contest]) -> str:
 
 def _best_gains(points: Points) -> Iterator[str]:
     """Where each dataflow but the reference gains most and least."""
-    no_flows = {"object", *replicated_policies(points)}
+    no_flows = {REFERENCE, *replicated_policies(points)}
     titles = dict.fromkeys(row["policy"] for row in points.profits)
     for title in (each for each in titles if each not in no_flows):
         of_title = [

@@ -7,7 +7,8 @@ import pytest
 
 from simmpp.engine.result import Result
 from simmpp.errors import ConfigError
-from simmpp.report.profit import profits, ratio
+from simmpp.report.profit import profits
+from simmpp.sweeps.profits import ratio
 
 
 def result(policy: str, makespan_ps: int, requests: int) -> Result:
