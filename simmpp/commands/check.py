@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MOVED = 1
 MOVES_SHOWN = 25
 """Lines of each table."""
-MOVED_CSV, OVERLAY = "moved.csv", "profits.png"
+MOVED_CSV, OVERLAY = "moved.csv", "profits"
 
 
 @click.command("check")
@@ -38,7 +38,7 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits.png"
 @click.option(
     "--out",
     type=NamedPath(),
-    help="Folder for what came out: the tables, moved.csv, and profits.png over the baseline's.",
+    help="Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
 )
 @workers_option("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
@@ -171,7 +171,7 @@ def _write(found: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, o
     """What a failed check leaves for people: tables and a picture."""
     from simmpp.report.baseline import PROFITS, RECORD, RESULTS
     from simmpp.report.compare import lines
-    from simmpp.report.plots import overlay
+    from simmpp.report.page.overlay import overlay
     from simmpp.sweeps.tables import write_csv
 
     for name in (PROFITS, RESULTS, RECORD):

@@ -8,6 +8,9 @@ from typing import NamedTuple
 
 from simmpp.report.measured import Ratios, mean
 
+LOG_MARGIN = 1.2
+"""Factor of room beyond both ends of a logarithmic axis."""
+
 
 class Spread(NamedTuple):
     """A value over seeds."""
@@ -80,6 +83,13 @@ class Panel:
     """What lines and bands are."""
     legend: str = ""
     """What the curves' labels are, if that needs saying."""
+
+    def style_of(self, curve: Curve) -> int:
+        """Number of a measured curve's colour and marker: those of one label look the same."""
+        if curve.style is not None:
+            return curve.style
+        labels = dict.fromkeys(each.label for each in self.curves if not each.is_guide)
+        return list(labels).index(curve.label)
 
     @property
     def has_bands(self) -> bool:

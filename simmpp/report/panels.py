@@ -76,9 +76,8 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         _draw_stated(axes, stated)
     if panel.level is not None:
         axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
-    labels = list(dict.fromkeys(curve.label for curve in panel.curves if not curve.is_guide))
     for curve in panel.curves:
-        style = GUIDE if curve.is_guide else STYLES[_number(curve, labels) % len(STYLES)]
+        style = GUIDE if curve.is_guide else STYLES[panel.style_of(curve) % len(STYLES)]
         _draw_curve(axes, curve, style, panel)
     axes.set_xscale("log" if panel.x.is_log else "linear")
     axes.set_yscale("log" if panel.y.is_log else "linear")
@@ -95,11 +94,6 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     axes.set_axisbelow(True)
     if panel.curves:
         _draw_legend(axes, panel.legend)
-
-
-def _number(curve: Curve, labels: list[str]) -> int:
-    """Of its style: curves of one label look alike."""
-    return labels.index(curve.label) if curve.style is None else curve.style
 
 
 def _draw_legend(axes: Axes, title: str) -> None:

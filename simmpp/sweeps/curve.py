@@ -25,6 +25,7 @@ from simmpp.placement.placement import Placement, PlacementRules
 from simmpp.placement.residents import resident_count
 from simmpp.placement.rotated import rotated
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.profits import ratio
 from simmpp.workload.workload import Workload
 
@@ -34,7 +35,6 @@ are steep and runs are cheap. At 1 there is nothing to send, and all policies ar
 ESTIMATE, compared with sparser ones on the paper's scenes."""
 APART = Fraction(1, 25)
 """How far above the least fraction the next node has to be."""
-REFERENCE = PolicyParameters("object")
 
 Floats = NDArray[np.float64]
 
@@ -88,18 +88,21 @@ def estimate(
         raise ConfigError("curve: random owners or pixels: expected residents alone to be drawn")
     if not fractions or min(fractions) < 0 or max(fractions) > 1 or replicates < 1:
         raise ConfigError("curve: expected fractions from 0 to 1, and 1 replicate or more")
+
+    def run(placement: Placement, policy: PolicyParameters) -> Result:
+        return simulate(
+            workload, machine, placement, policy, engine=engine, ready_order=ready_order
+        )
+
     xs = node_fractions(min(fractions))
     nodes: list[list[Node]] = [[] for _ in policies]
     for each in range(seed, seed + replicates):
         placements = rotated(workload, machine.processors, xs, rules, each)
         for x, placement in zip(xs, placements, strict=True):
-            runs = [
-                simulate(workload, machine, placement, p, engine=engine, ready_order=ready_order)
-                for p in (REFERENCE, *policies)
-            ]
             at = share(x, workload.n_objects, machine.processors)
-            for of_policy, run in zip(nodes, runs[1:], strict=True):
-                of_policy.append(node_of(placement, at, runs[0], run))
+            reference = run(placement, PolicyParameters(REFERENCE))
+            for of_policy, policy in zip(nodes, policies, strict=True):
+                of_policy.append(node_of(placement, at, reference, run(placement, policy)))
     shares = np.array([share(x, workload.n_objects, machine.processors) for x in fractions])
     return [
         Estimate(policy.title, fraction, *numbers)

@@ -10,6 +10,8 @@ from simmpp.report.page.figure import Figure
 from simmpp.report.rungs import rungs
 from simmpp.sweeps.tables import Row
 
+STEM = "run-time-against-error"
+
 
 def accuracy_figures(bench: Sequence[Row]) -> list[Figure]:
     """One figure, or none without rows."""
@@ -19,6 +21,4 @@ def accuracy_figures(bench: Sequence[Row]) -> list[Figure]:
     keys = columns[: columns.index("policy")]
     reference = max(row["reference_seeds"] + row["seeds"] for row in bench)
     panels = bench_panels(rungs(bench, keys), NAMES, reference)
-    return [
-        Figure("run-time-against-error", "Run time against error", panels[0].note, {"": panels})
-    ]
+    return [Figure(STEM, "Run time against error", panels[0].note, {"": panels})]

@@ -12,6 +12,7 @@ from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
+STEMS = ACCOUNTS, MESSAGES = ("accounts-by-policy", "messages-by-kind")
 PERCENT, MARGIN = 100, 1.02
 
 
@@ -19,7 +20,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
     """Accounts and messages along the best axis, one panel for each policy."""
     yield _figure(
         points,
-        "accounts-by-policy",
+        ACCOUNTS,
         "What PEs spend their time with",
         "shares of the time of all PEs, all seeds together",
         Scale("share of time (%)"),
@@ -27,7 +28,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
     )
     yield _figure(
         points,
-        "messages-by-kind",
+        MESSAGES,
         "Messages by kind",
         "means over seeds; the same scale for all policies",
         Scale("messages"),

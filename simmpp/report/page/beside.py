@@ -1,4 +1,4 @@
-"""Pictures and tables that others left in the folder: single runs, run time against error, ..."""
+"""Pictures and tables that others left in the folder: of single runs, of a sensitivity analysis."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from simmpp.errors import ConfigError
 from simmpp.report.figures import FIGURES
+from simmpp.report.page import accuracy, bar_figures
 from simmpp.report.page.profit_figures import TITLES
 
 TOPICS = {
@@ -19,7 +20,7 @@ TOPICS = {
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
 """Kinds of pictures."""
-OWN = (*TITLES, "accounts_by_policy", "messages_by_kind", *FIGURES)
+OWN = (*(name.replace("_", "-") for name in TITLES), *bar_figures.STEMS, accuracy.STEM, *FIGURES)
 """Beginnings of the stems of a report's own figures, which may be those of an earlier one."""
 MOST_ROWS = 200
 """Lines of a table that are shown."""
@@ -55,14 +56,13 @@ class Section(NamedTuple):
 
 
 def beside(folder: Path) -> list[Section]:
-    """Sections for bench, sensitivity, and the pictures in ``figures`` that no report made."""
+    """Sections for each topic, and for the pictures in ``figures`` that no report made."""
     sections = []
     for topic, name in TOPICS.items():
         stems = [topic, f"{topic}-*"]
         tables = [_table(path) for path in _found(folder, [f"{stem}.csv" for stem in stems])]
         sections.append(Section(topic, name, _pictures(folder, stems), tables))
-    own = tuple(stem.replace("_", "-") for stem in OWN)
-    others = [p for p in _pictures(folder / "figures", ["*"]) if not p.name.startswith(own)]
+    others = [p for p in _pictures(folder / "figures", ["*"]) if not p.name.startswith(OWN)]
     sections.append(Section("runs", "Pictures of single runs", others, []))
     return [each for each in sections if each.pictures or each.tables]
 

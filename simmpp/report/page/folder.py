@@ -114,8 +114,12 @@ def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
 
 
 def _numbers(path: Path, columns: Sequence[str]) -> list[Row]:
-    """A CSV file's rows, with numbers where cells look like some."""
-    return [{name: _number(cell) for name, cell in row.items()} for row in _table(path, columns)]
+    return numbers_of(_table(path, columns))
+
+
+def numbers_of(rows: Sequence[Mapping[str, str]]) -> list[Row]:
+    """Rows of a CSV file, with numbers where cells look like some."""
+    return [{name: _number(cell) for name, cell in row.items()} for row in rows]
 
 
 def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:

@@ -61,22 +61,13 @@ def _span(values: Iterable[float]) -> str:
     return f"{min(found):.3g} to {max(found):.3g}" if found else "nothing"
 
 
-def style_of(panel: Panel, curve: Curve) -> int:
-    """The number of a curve's colour, marker and dashes."""
-    if curve.style is not None:
-        return curve.style % COLOURS
-    labels = list(dict.fromkeys(each.label for each in panel.curves if not each.is_guide))
-    return labels.index(curve.label) % COLOURS
-
-
 def _curves(panel: Panel) -> Drawn:
     traces: list[Drawn] = []
     for curve in panel.curves:
         if curve.is_guide:
             traces.append(_guide(curve))
             continue
-        style = style_of(panel, curve)
-        traces.append(_line(curve, style, panel))
+        traces.append(_line(curve, panel.style_of(curve) % COLOURS, panel))
     made = layout(panel.x, limited(panel))
     made["shapes"] = [_stated(each) for each in panel.stated]
     made["annotations"] = [_remark(each, panel) for each in panel.stated if each.label]

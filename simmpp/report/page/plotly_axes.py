@@ -7,10 +7,8 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from simmpp.report.curves import Panel, Scale
+from simmpp.report.curves import LOG_MARGIN, Panel, Scale
 
-LOG_MARGIN = 1.2
-"""Room beyond the ends of a logarithmic axis."""
 LOG_STEPS, MOST_POWERS = (1, 2, 5), 4
 Drawn = dict[str, Any]
 """A piece of a figure, as JSON data."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 
-from simmpp.report.curves import Curve, Panel, Scale, Spread
+from simmpp.report.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, slug, styles_of
@@ -15,8 +15,8 @@ from simmpp.sweeps.tables import Row
 MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
 """A measure is shown along so many axes; the second has at least so many values, and at most so
 many plates to choose from."""
-MARGIN, LOG_MARGIN = 1.06, 1.2
-"""Room beyond the largest value, and beyond both ends of a logarithmic axis."""
+MARGIN = 1.06
+"""Factor of room beyond the largest value."""
 TITLES = {
     "time_profit": ("Time profit", "T(object dataflow) / T(policy)"),
     "message_profit": ("Message profit", "messages(object dataflow) / messages(policy)"),

@@ -123,7 +123,11 @@ def _verdicts(folder: Folder) -> str:
     """How many claims hold, in part, and do not."""
     counts = Counter(claim["holds"] for claim in folder.claims)
     words = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
-    parts = [f"{counts[k]} {one if counts[k] == 1 else more}" for k, (one, more) in words.items()]
+    parts = [
+        f"{counts[kind]} {one if counts[kind] == 1 else more}"
+        for kind, (one, more) in words.items()
+        if counts[kind]
+    ]
     return f"Of {len(folder.claims)} claims: {', '.join(parts)}."
 
 

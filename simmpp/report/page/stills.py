@@ -17,11 +17,11 @@ def write_stills(figures: Iterable[Figure], folder: Path) -> Iterator[list[Path]
     folder.mkdir(parents=True, exist_ok=True)
     for figure in figures:
         for plate, panels in figure.plates.items():
-            titled = [_titled(panel, figure, plate) for panel in panels]
+            titled = [titled(panel, figure, plate) for panel in panels]
             yield draw(titled, folder / figure.files[plate])
 
 
-def _titled(panel: Panel | Bars, figure: Figure, plate: str) -> Panel | Bars:
+def titled(panel: Panel | Bars, figure: Figure, plate: str) -> Panel | Bars:
     """A title that says all, as the file stands alone."""
     if isinstance(panel, Panel) and panel.title.startswith("Figure"):
         return panel

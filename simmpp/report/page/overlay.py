@@ -1,0 +1,38 @@
+"""Profit curves of a sweep over those of an earlier one, all in one picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from simmpp.report.curves import Panel
+from simmpp.report.page.arrangement import axes_of
+from simmpp.report.page.folder import numbers_of
+from simmpp.report.page.profit_figures import Shown, profit_figures
+from simmpp.report.page.stills import titled
+from simmpp.report.panels import draw
+from simmpp.sweeps.profits import profit_columns
+
+NOTE = "wide and pale: before"
+MOST_PANELS = 48
+"""Panels of one picture."""
+
+
+def overlay(
+    before: Sequence[Mapping[str, str]], now: Sequence[Mapping[str, str]], stem: Path
+) -> list[Path]:
+    """Draw rows of ``profits.csv`` over earlier ones as ``stem``.png and .svg; returns these."""
+    old, new = numbers_of(before), numbers_of(now)
+    rows = [*new, *old]
+    common = [name for name in rows[0] if name in rows[-1]]
+    further = [name for name in common if name not in profit_columns()]
+    figures = profit_figures(Shown(new, axes_of(rows, further), old))
+    panels = [
+        titled(replace(panel, note=NOTE), figure, plate)
+        for figure in figures
+        for plate, of_plate in figure.plates.items()
+        for panel in of_plate
+        if isinstance(panel, Panel)
+    ]
+    return draw(panels[:MOST_PANELS], stem)
