@@ -17,8 +17,8 @@ def write_stills(figures: Iterable[Figure], folder: Path) -> Iterator[list[Path]
     folder.mkdir(parents=True, exist_ok=True)
     for figure in figures:
         for plate, panels in figure.plates.items():
-            titled = [titled(panel, figure, plate) for panel in panels]
-            yield draw(titled, folder / figure.files[plate])
+            shown = [titled(panel, figure, plate) for panel in panels]
+            yield draw(shown, folder / figure.files[plate])
 
 
 def titled(panel: Panel | Bars, figure: Figure, plate: str) -> Panel | Bars:
