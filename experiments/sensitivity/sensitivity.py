@@ -3,12 +3,13 @@
     pip install '.[experiments]'
     python experiments/sensitivity/sensitivity.py
 
-Every factor of factors.py is drawn over its range (Saltelli's scheme on a scrambled Sobol sequence,
-SALib), object, ray and concurrent dataflow are simulated at each draw, with the same seed of the
-placement, and the variance of the logarithm of each ratio is apportioned. Writes draws.csv (the
-values of each draw), sensitivity.csv (what was simulated; continues where it was stopped),
-indices.csv, levels.csv (means by level or third of a range), reduction.csv (some draws at full
-resolution) and the figure.
+Every factor of factors.py is drawn over its range (the scheme of Saltelli 2002, Comput. Phys.
+Commun. 145, 280-297, on a scrambled Sobol sequence; indices of Sobol 2001, Math. Comput. Simul. 55,
+271-280; both by SALib), object, ray and concurrent dataflow are simulated at each draw, with the
+same seed of the placement, and the variance of the logarithm of each ratio is apportioned. Writes
+draws.csv (the values of each draw), sensitivity.csv (what was simulated; continues where it was
+stopped), indices.csv, levels.csv (means by level or third of a range), reduction.csv (some draws at
+full resolution) and the figure.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     help="Keep the page up to date while a sweep works in DIR; ends with it, or with Ctrl-C.",
 )
 def report_command(folder_path: Path, live: bool) -> None:
-    """Make a page of the rows in DIR, which sweep, run or reproduce wrote.
+    """Make a page of the rows in DIR, which sweep, run, bench or reproduce wrote.
 
     Writes DIR/report.html, which opens in any browser and loads nothing from anywhere: who wins
     where and how surely, the curves, and every number of the point that is clicked on; and each

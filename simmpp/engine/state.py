@@ -74,7 +74,8 @@ class State:
     def ensure_room(self, now_ps: int) -> None:
         """See to it that all messages that one more step can send at most have a place.
 
-        ``now_ps`` is the time of that step.
+        So have their rows in the event log: what ended before ``now_ps``, the time of that step,
+        is handed on if the log is full.
         """
         room = len(self.messages) - self.arrays["messages_marks"][USED]
         most_sent = len(self.arrays["outbox"])

@@ -14,3 +14,5 @@ POLICIES: dict[str, DataflowPolicy] = {
     "concurrent": CONCURRENT_DATAFLOW,
     "replicated": REPLICATED,
 }
+DEFAULT_POLICY = "concurrent"
+"""What a configuration that names none compares with object dataflow."""

@@ -11,6 +11,7 @@ from itertools import chain
 from pathlib import Path
 
 from simmpp.errors import ConfigError
+from simmpp.policy.table import DEFAULT_POLICY
 from simmpp.report.bench_figure import bench_panels
 from simmpp.report.figures import NAMES
 from simmpp.report.panels import draw
@@ -35,6 +36,7 @@ from simmpp.workload.tracer import trace
 
 BENCH = "bench.csv"
 FEW_PIXELS = 4
+"""Along each side of a picture that is traced only to have the tracer compiled."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ def _tried(config: Config, method: str, seeds: int) -> Config:
     source = config.source.data if config.source else {}
     policies = [
         entry
-        for entry in long_policies(source.get("policy", "concurrent"))
+        for entry in long_policies(source.get("policy", DEFAULT_POLICY))
         if known is None or not isinstance(entry, dict) or entry["name"] in known
     ]
     chosen = seeds_in_order(config.settings.seeds, min(most, seeds))

@@ -64,8 +64,7 @@ def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, f
 def seed_counts(method: str, simulated: int) -> list[int]:
     """1, 2, 4, ... seeds: at most a quarter of those simulated, lest the rest is no reference."""
     most = METHODS[method].most_seeds or simulated
-    counts = [2**n for n in range(most.bit_length()) if 2**n <= min(most, max(simulated // 4, 1))]
-    return counts
+    return [2**n for n in range(most.bit_length()) if 2**n <= min(most, max(simulated // 4, 1))]
 
 
 def _rungs(runs: Runs) -> Iterator[Row]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, SceneObject, Sphere
 
-COORDINATES: Floats = np.zeros(3)
+ORIGIN: Floats = np.zeros(3)
 """The origin of the scene's own coordinates."""
 
 
@@ -18,7 +18,7 @@ def box(item: SceneObject) -> Floats:
     return bounds
 
 
-def boxes(items: Sequence[SceneObject], origin: Floats = COORDINATES) -> Floats:
+def boxes(items: Sequence[SceneObject], origin: Floats = ORIGIN) -> Floats:
     """Bounds of objects, seen from ``origin`` (3,): (n, 2, 3) float64, low and high corners.
 
     An offset of everything, the origin too, leaves them as they are, if the coordinates bear it.

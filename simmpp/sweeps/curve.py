@@ -34,7 +34,7 @@ NODES = tuple(Fraction(n, 20) for n in (2, 4, 6, 8, 10, 12, 14, 16, 17, 18, 19))
 are steep and runs are cheap. At 1 there is nothing to send, and all policies are the same.
 ESTIMATE, compared with sparser ones on the paper's scenes."""
 APART = Fraction(1, 25)
-"""How far above the least fraction the next node has to be."""
+"""How far above the least fraction the next node has to be. ESTIMATE."""
 
 Floats = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from simmpp.engine.synchronous import DATAFLOWS
 from simmpp.sweeps.case import Case
 from simmpp.sweeps.modelling import analytical, analytical_measured
 from simmpp.sweeps.simulating import simulated
@@ -30,11 +31,10 @@ class Method:
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
 
 
-OF_THE_MODEL = ("object", "ray")
 METHODS: dict[str, Method] = {
     "simulate": Method(simulated, most_seeds=None),
-    "analytical": Method(analytical, OF_THE_MODEL, is_placed=False, uses_engine=False),
-    "analytical-measured": Method(analytical_measured, OF_THE_MODEL, uses_engine=False),
+    "analytical": Method(analytical, DATAFLOWS, is_placed=False, uses_engine=False),
+    "analytical-measured": Method(analytical_measured, DATAFLOWS, uses_engine=False),
 }
 SIMULATE = "simulate"
 """Full fidelity: what the others' errors are measured against."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from simmpp.errors import ConfigError
 from simmpp.machine.constants import long_test
+from simmpp.policy.table import DEFAULT_POLICY
 from simmpp.strict import Place, submodel, unknown
 from simmpp.sweeps.scene_settings import long_scene
 from simmpp.sweeps.settings import Settings, long_policies
@@ -57,7 +58,7 @@ def _children(
 ) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
     """The mappings under a key, written out; several where it holds a list of policies."""
     if node.get(part) is None:
-        node[part] = {"name": "concurrent"} if path == ("policy",) else {}
+        node[part] = {"name": DEFAULT_POLICY} if path == ("policy",) else {}
     elif path in _LONG_FORMS:
         node[part] = _LONG_FORMS[path](node[part])
     here = (*within, part)

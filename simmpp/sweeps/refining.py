@@ -2,8 +2,9 @@
 
 What a line from a to b is off in the middle is estimated from the points beside it. Point i lies
 beside the straight line through its neighbours by d(i), which is f''/2 h(i) h(i+1) for a curve of
-second derivative f'' and steps h; a line over a step of h is off by f''/8 h^2 at most. So an
-interval of length h is off by |d(i)| h^2 / (4 h(i) h(i+1)), by the larger estimate of its two ends.
+second derivative f'' and steps h; a line over a step of h is off by f''/8 h^2 at most (the error
+bound of linear interpolation, as in any text on numerical analysis). So an interval of length h is
+off by |d(i)| h^2 / (4 h(i) h(i+1)), by the larger estimate of its two ends.
 
 Noise bends curves too. d(i) is taken seed by seed (the points of a curve share their seeds, and
 residents are nested, so much of the noise cancels), and counts only as far as it is beyond the

@@ -12,7 +12,7 @@ from simmpp.errors import ConfigError
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.presets import preset_names
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.table import POLICIES
+from simmpp.policy.table import DEFAULT_POLICY, POLICIES
 from simmpp.strict import (
     Expect,
     Share,
@@ -100,14 +100,14 @@ class PlacementSettings(Strict):
 
 
 POLICY = f"{', '.join(list(POLICIES)[:-1])} or {list(POLICIES)[-1]}, or a mapping"
-_DEFAULTS = PolicyParameters("concurrent")
+_DEFAULTS = PolicyParameters(DEFAULT_POLICY)
 
 
 class PolicySettings(Strict):
     """One policy. Its name alone is short for it; a list of either compares them."""
 
     name: Annotated[str, *one_of(*POLICIES)] = Field(
-        default="concurrent", description="the dataflow"
+        default=DEFAULT_POLICY, description="the dataflow"
     )
     label: Text | None = Field(
         default=None, description="name in tables and rows; the policy's name when not given"

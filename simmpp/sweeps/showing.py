@@ -1,4 +1,4 @@
-"""A sweep's tables while it runs, for those who watch it."""
+"""When to write the tables of a sweep that is still running."""
 
 from __future__ import annotations
 

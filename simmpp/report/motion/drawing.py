@@ -19,7 +19,8 @@ from simmpp.report.motion.torus import draw_torus
 from simmpp.report.panels import SETTINGS, STYLES, save
 from simmpp.units import format_ps
 
-COMPUTE, COMMUNICATION, WAITING = "#0072B2", "#E69F00", "#EDEDED"
+BLUE, VERMILION, GREEN, _, ORANGE, *_ = (style["color"] for style in STYLES)
+COMPUTE, COMMUNICATION, WAITING = BLUE, ORANGE, "#EDEDED"
 """Of Okabe and Ito (2008); waiting is light: both colours stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
@@ -93,9 +94,9 @@ def _progress(figure: Figure, motion: Motion) -> None:
     figure.set_size_inches(6.3, 5.4)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     edges = motion.times_ps * MS
-    upper.stairs(100 * motion.utilisation, edges, color=STYLES[0]["color"], label="PEs busy")
+    upper.stairs(100 * motion.utilisation, edges, color=BLUE, label="PEs busy")
     done = np.append(0, motion.completion) * 100
-    upper.plot(edges, done, color=STYLES[1]["color"], linestyle="--", label="rays finished")
+    upper.plot(edges, done, color=VERMILION, linestyle="--", label="rays finished")
     for height, (share, time_ps) in zip((25, 50, 75), motion.marks_ps.items(), strict=True):
         upper.axvline(time_ps * MS, color="0.45", linewidth=0.8, linestyle=(0, (2, 2)))
         upper.annotate(
@@ -108,10 +109,8 @@ def _progress(figure: Figure, motion: Motion) -> None:
     sent, rays, most = motion.batches
     middles = (edges[1:] + edges[:-1]) / 2
     has = sent > 0
-    lower.plot(
-        middles[has], rays[has] / sent[has], ".", markersize=3, label="mean", color="#0072B2"
-    )
-    lower.plot(middles[has], most[has], "_", markersize=4, label="largest", color="#D55E00")
+    lower.plot(middles[has], rays[has] / sent[has], ".", markersize=3, label="mean", color=BLUE)
+    lower.plot(middles[has], most[has], "_", markersize=4, label="largest", color=VERMILION)
     lower.set(xlabel="time (ms)", ylabel="rays in a message")
     if has.any():
         lower.set_yscale("log")
@@ -148,7 +147,7 @@ def _traffic(figure: Figure, motion: Motion) -> None:
     sizes.grid(axis="y", color="0.9")
     sizes.set(xlabel="bytes with header, less than", ylabel="messages")
     far = figure.add_subplot(grid[1, 1])
-    far.bar(np.arange(len(motion.hops)), motion.hops, color=STYLES[0]["color"])
+    far.bar(np.arange(len(motion.hops)), motion.hops, color=BLUE)
     far.set(xlabel="links crossed", ylabel="messages", ylim=(0, None if motion.hops.any() else 1))
     if not motion.hops.any():
         for axes in (matrix, sizes, far):
@@ -175,9 +174,9 @@ def _memory(figure: Figure, motion: Motion) -> None:
     axes = figure.subplots()
     pes, bottom = np.arange(len(motion.load)), np.zeros(len(motion.load))
     parts = {
-        "resident objects": (motion.resident_bytes, "#0072B2", ""),
-        "fetched objects, at most": (motion.transient_bytes, "#E69F00", ""),
-        "rays held, at most": (motion.queue_bytes, "#009E73", "////"),
+        "resident objects": (motion.resident_bytes, BLUE, ""),
+        "fetched objects, at most": (motion.transient_bytes, ORANGE, ""),
+        "rays held, at most": (motion.queue_bytes, GREEN, "////"),
     }
     for label, (amounts, color, hatch) in parts.items():
         megabytes = amounts / 1e6

@@ -1,4 +1,4 @@
-"""What there is in a folder: the rows of a sweep, of a run, or of the paper's experiments."""
+"""What there is in a folder: rows of a sweep, a run, a bench, or the paper's experiments."""
 
 from __future__ import annotations
 

@@ -13,39 +13,18 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 from builders import Case, cases, placement_of, workload_of
+from by_hand import MACHINE, OBJECT
 from hypothesis import given, settings
 
 from simmpp.engine import state
 from simmpp.engine.simulate import ENGINES, simulate
-from simmpp.machine.machine import CopyCost, Machine, TestCost
-from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.timeline.recorder import TimelineRecorder
 from simmpp.report.timeline.slices import Window
 from simmpp.sweeps.point import PolicyRun
 
-BYTE_PER_PS = 10**12
-MACHINE = Machine(
-    name="by hand",
-    shape=(2, 1, 1),
-    send_startup_ps=10,
-    receive_startup_ps=20,
-    probe_ps=1,
-    pack=(CopyCost(2), CopyCost(3, BYTE_PER_PS), CopyCost(4, BYTE_PER_PS), CopyCost(5)),
-    unpack=(CopyCost(6), CopyCost(7, BYTE_PER_PS), CopyCost(8, BYTE_PER_PS), CopyCost(9)),
-    header_bytes=4,
-    request_bytes=8,
-    ray_bytes=10,
-    latency_ps=100,
-    hop_latency_ps=30,
-    link_bytes_per_s=BYTE_PER_PS,
-    injection_bytes_per_s=0,
-    test=TestCost(1000, 154, 1250, 7),
-    ray_ps=500,
-    quantum=4,
-)
 WORKLOAD = workload_of(primaries=1, itineraries=[[0, 1]], object_bytes=(40, 50))
-CASE = Case(WORKLOAD, MACHINE, placement_of((0, 1), [0], 2), PolicyParameters("object"))
-"""tests/verify/test_hand_worked.py explains each time: one ray fetches one object."""
+CASE = Case(WORKLOAD, MACHINE, placement_of((0, 1), [0], 2), OBJECT)
+"""tests/by_hand.py explains each time: one ray fetches one object."""
 
 
 def record(path: Path, case: Case, engine: str = "compiled", window: Window | None = None) -> int:
