@@ -18,7 +18,6 @@ with 8 and 32 PEs. None of these scenes, sizes and numbers of PEs is here.
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -33,6 +32,7 @@ from numpy.typing import NDArray
 from simmpp.sweeps.profits import MEASURES, ratio
 from simmpp.sweeps.seeding import FEWEST, corrected_interval, seeds_wanted
 from simmpp.sweeps.sweep import run_sweep
+from simmpp.sweeps.tables import write_csv
 
 HERE = Path(__file__).parent
 TOLERANCE, TRUE = Fraction(1, 50), 200
@@ -213,10 +213,7 @@ def main(name: str) -> None:
     for point in grid["points"]:
         rows += rows_of(point, profits_of(point, grid))
         print(point, share(rows[-4:]), rows[-1]["mean_seeds"], flush=True)
-    with open(HERE / f"coverage-{name}.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / f"coverage-{name}.csv")
     for line in summary(rows):
         print(line)
 

@@ -12,7 +12,6 @@ Performance, chapter 5), with measured visits.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
@@ -28,6 +27,7 @@ from simmpp.machine.presets import machine
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.scene.load import load_scene
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
@@ -156,10 +156,7 @@ def main() -> None:
     runs = all_runs()
     rows = [row for scene in FIGURE4 for row in rows_of(scene, runs)]
     path = Path(__file__).with_suffix(".csv")
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), path)
     for policy, numbers in PAIRS.items():
         for name in (FLUIDS[number] for number in numbers):
             of = [row["r"] for row in rows if (row["policy"], row["fluid"]) == (policy, name)]

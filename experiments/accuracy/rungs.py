@@ -11,7 +11,6 @@ policy and scene, and its figure.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections import defaultdict
 from collections.abc import Iterator
@@ -25,6 +24,7 @@ from rungs_runs import FIGURE4, HELD_OUT, all_runs, processors_of
 
 from simmpp.model.smooth import smooth
 from simmpp.sweeps.curve import Node, profits_at
+from simmpp.sweeps.tables import write_csv
 
 HERE = Path(__file__).parent
 CLOSE = 0.05
@@ -227,10 +227,7 @@ def main() -> None:
     for policy in ("concurrent", "ray"):
         for scene in (*FIGURE4, *HELD_OUT):
             rows += judged(table_of(runs, scene, policy), scene, policy)
-    with open(HERE / "rungs.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / "rungs.csv")
     draw(rows)
 
 

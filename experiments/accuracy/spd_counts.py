@@ -9,10 +9,10 @@ traced to another depth.
 
 from __future__ import annotations
 
-import csv
 import sys
 from pathlib import Path
 
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload import geometry
 
 HERE = Path(__file__).parent
@@ -63,10 +63,7 @@ def main() -> None:
             geometry.T_MIN = least
             table += rows(name, variant, traced_counts(name, depth))
             print(name, variant, *(row["ours"] for row in table[-len(QUANTITIES) :]), flush=True)
-    with (HERE / "spd_counts.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+    write_csv(table, list(table[0]), HERE / "spd_counts.csv")
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.provenance import result_versions
 from simmpp.sweeps.sweep import Watcher, run_pending
+from simmpp.sweeps.tables import write_csv
 from simmpp.yamlfile import parse_yaml
 
 HERE = Path(__file__).parent
@@ -107,10 +108,7 @@ def published() -> Row:
 
 def write(rows: list[Row], name: str) -> None:
     """Write rows as CSV beside this script."""
-    with open(HERE / name, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / name)
 
 
 def main() -> None:

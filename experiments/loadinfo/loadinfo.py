@@ -8,7 +8,6 @@ rows, a summary per scene and half of x, and the figure, and prints the summary.
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -23,6 +22,7 @@ from matplotlib.figure import Figure
 from simmpp.report.measured import MAKESPAN, MESSAGES, Measured, mean
 from simmpp.report.panels import SETTINGS, STYLES, save
 from simmpp.sweeps.sweep import RESULTS, run_sweep
+from simmpp.sweeps.tables import write_csv
 
 HERE = Path(__file__).parent
 SCENES = {
@@ -99,10 +99,7 @@ def main() -> None:
     copyfile(folder / RESULTS, HERE / "loadinfo.csv")
     measured = Measured(result.rows.fillna({"error": ""}).to_dict("records"))
     rows = list(summary(measured))
-    with open(HERE / "summary.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / "summary.csv")
     for row in rows:
         print(*row.values(), sep="\t")
     draw(measured)

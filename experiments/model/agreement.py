@@ -8,7 +8,6 @@ any other. Writes agreement.csv (a row per costs, nb and x), agreement-widths.cs
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterable
 from fractions import Fraction
@@ -28,6 +27,7 @@ from simmpp.model.costs import costs_of
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload.synthetic import synthetic
 from simmpp.workload.workload import Workload
 
@@ -101,10 +101,7 @@ def error(row: Row, model: str) -> float:
 
 def write(rows: list[Row], name: str) -> None:
     """Write rows as CSV beside this script."""
-    with open(HERE / name, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / name)
 
 
 STYLES = {

@@ -8,7 +8,6 @@ gap.csv, a row per scene, x and dataflow; times of models are divided by the sim
 
 from __future__ import annotations
 
-import csv
 from fractions import Fraction
 from pathlib import Path
 
@@ -26,6 +25,7 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
@@ -116,10 +116,7 @@ def main() -> None:
                 times = makespans(workload, placement, dataflow)
                 rows.append(row_of(scene, x, dataflow, times))
                 print(rows[-1], flush=True)
-    with open(HERE / "gap.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / "gap.csv")
     draw(rows)
 
 

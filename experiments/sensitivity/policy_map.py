@@ -31,6 +31,7 @@ from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.panels import SETTINGS, save
 from simmpp.scene.load import load_scene
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
 
@@ -169,10 +170,7 @@ def main() -> None:
     path = HERE / "policy_map.csv"
     if not path.exists():
         rows = simulated()
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
+        write_csv(rows, list(rows[0]), path)
     with open(path, encoding="utf-8", newline="") as file:
         draw(list(csv.DictReader(file)))
 

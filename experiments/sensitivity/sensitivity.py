@@ -36,6 +36,7 @@ from SALib.sample import sobol
 from simmpp.engine.simulate import simulate
 from simmpp.report.panels import save
 from simmpp.scene.load import load_scene
+from simmpp.sweeps.tables import write_csv
 from simmpp.workload.picture import Picture
 from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
@@ -117,10 +118,7 @@ def read(name: str) -> list[dict[str, str]]:
 
 def write(rows: list[dict[str, object]], name: str) -> None:
     """Write rows as CSV beside this script."""
-    with open(HERE / name, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(rows, list(rows[0]), HERE / name)
 
 
 def simulate_rest(name: str, numbers: list[int], values: list[Values], resolution: int) -> None:
