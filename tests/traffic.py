@@ -17,7 +17,7 @@ from simmpp.engine.event_heap import EVENT_KEY, HEAD, pop, push
 from simmpp.engine.layout import MESSAGE
 from simmpp.engine.memory import messages
 from simmpp.engine.sending import inject
-from simmpp.engine.state import new_state
+from simmpp.engine.start import new_state
 from simmpp.machine.links import LINKS
 from simmpp.machine.machine import UNLIMITED, Machine
 

@@ -26,7 +26,8 @@ from traffic import arrivals_ps
 
 from simmpp.compiled import njit
 from simmpp.engine.simpy_engine import SimpyRun
-from simmpp.engine.state import State, new_state
+from simmpp.engine.start import new_state
+from simmpp.engine.state import State
 from simmpp.machine.links import LINKS, ROWS_PER_PE, ejection_port, injection_port, link_towards
 from simmpp.machine.machine import Machine
 from simmpp.machine.network import transfer_ps

@@ -13,7 +13,8 @@ from simmpp.engine.layout import NONE
 from simmpp.engine.log import Collector, Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
-from simmpp.engine.state import State, new_state
+from simmpp.engine.start import new_state
+from simmpp.engine.state import State
 from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError, ModelError
 from simmpp.machine.machine import Machine

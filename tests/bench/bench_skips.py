@@ -23,7 +23,7 @@ import numpy as np
 import simmpp
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.layout import WANT
-from simmpp.engine.state import new_state
+from simmpp.engine.start import new_state
 from simmpp.engine.tables import USED
 from simmpp.sweeps.config import config_from_mapping
 from simmpp.sweeps.plan import plan

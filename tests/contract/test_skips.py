@@ -19,7 +19,8 @@ import simmpp
 from simmpp.engine import compiled_engine
 from simmpp.engine.alone import run_alone
 from simmpp.engine.result import Result
-from simmpp.engine.state import State, new_state
+from simmpp.engine.start import new_state
+from simmpp.engine.state import State
 from simmpp.engine.tables import USED
 from simmpp.errors import ConfigError
 from simmpp.machine.work import CLOCK_LIMIT_PS

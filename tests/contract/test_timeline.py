@@ -8,7 +8,7 @@ from builders import Case, cases
 from hypothesis import given, settings
 from numpy.typing import NDArray
 
-from simmpp.engine import state
+from simmpp.engine import start, state
 from simmpp.engine.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
@@ -27,7 +27,8 @@ def timeline_of(
     timeline = Timeline(case.machine.processors, case.machine.probe_ps, window)
     parts: list[Part] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(state, "LOG_ROWS", log_rows)
+        for module in (start, state):
+            patch.setattr(module, "LOG_ROWS", log_rows)
         result = simulate(
             case.workload,
             case.machine,
@@ -153,7 +154,8 @@ def test_portions_are_the_whole_log(engine: str, case: Case) -> None:
     options = {"engine": engine, "ready_order": case.ready_order}
     whole = simulate(*arguments, **options, log=True).log
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(state, "LOG_ROWS", 1)
+        for module in (start, state):
+            patch.setattr(module, "LOG_ROWS", 1)
         simulate(*arguments, **options, log=lambda rows: portions.append(rows.copy()))
     assert whole is not None
     assert sorted(np.concatenate(portions).tolist()) == sorted(whole.tolist())
