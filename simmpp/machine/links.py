@@ -29,13 +29,13 @@ DIRECTIONS = ("+x", "-x", "+y", "-y", "+z", "-z")
 
 @njit
 def injection_port(pe: int) -> int:
-    """Its row."""
+    """Row of the port through which a PE's messages enter the network."""
     return pe * ROWS_PER_PE + PORTS
 
 
 @njit
 def ejection_port(pe: int) -> int:
-    """Its row."""
+    """Row of the port through which messages leave the network to a PE."""
     return pe * ROWS_PER_PE + PORTS + 1
 
 
