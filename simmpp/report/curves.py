@@ -30,6 +30,8 @@ class Curve:
     """Not measured: drawn thin and grey."""
     said: dict[float, str] = field(default_factory=dict)
     """What is written beside points, by abscissa."""
+    floor: float = 0
+    """Below this nothing can be told apart; drawn as a band under the curve."""
 
 
 @dataclass(frozen=True)
