@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.report.profit import profits
     from simmpp.scene.load import load_scene
+    from simmpp.sweeps.curve import estimate
     from simmpp.sweeps.sweep import run_sweep as sweep
     from simmpp.workload.exchange import export_workload, import_workload
     from simmpp.workload.picture import Picture
@@ -36,6 +37,7 @@ _HOME = {
     "PlacementRules": "simmpp.placement.placement:PlacementRules",
     "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
     "Result": "simmpp.engine.result:Result",
+    "estimate": "simmpp.sweeps.curve:estimate",
     "export_workload": "simmpp.workload.exchange:export_workload",
     "import_workload": "simmpp.workload.exchange:import_workload",
     "load_scene": "simmpp.scene.load:load_scene",
@@ -53,6 +55,7 @@ __all__ = [
     "PlacementRules",
     "PolicyParameters",
     "Result",
+    "estimate",
     "export_workload",
     "import_workload",
     "load_scene",

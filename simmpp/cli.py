@@ -10,8 +10,10 @@ import click
 
 from simmpp.commands.bench import bench_command
 from simmpp.commands.check import check_command
+from simmpp.commands.compare import compare_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
+from simmpp.commands.report import report_command
 from simmpp.commands.reproduce import reproduce_command
 from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
@@ -54,8 +56,13 @@ def _leave_pipe() -> NoReturn:
 
 
 def _quit(message: str, code: int) -> NoReturn:
-    click.echo("simmpp: " + " ".join(message.splitlines()), err=True)
+    click.echo("simmpp: " + _printable(" ".join(message.splitlines())), err=True)
     sys.exit(code)
+
+
+def _printable(text: str) -> str:
+    """The text with control characters, which names may hold, written out."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -72,8 +79,10 @@ main.add_command(run_command)
 main.add_command(sweep_command)
 main.add_command(check_command)
 main.add_command(bench_command)
+main.add_command(compare_command)
 main.add_command(machine_command)
 main.add_command(model_command)
+main.add_command(report_command)
 main.add_command(reproduce_command)
 main.add_command(scene_command)
 main.add_command(workload_command)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from builders import Case
-from oracles.ledger import Outcome
+from oracles.ledger import Outcome, Slice
 from oracles.machine import simulate as simulate_slowly
 from oracles.rules import Rules
 
@@ -40,16 +40,16 @@ def result_of(engine: str, case: Case) -> Result:
 
 def outcome_of(result: Result) -> Outcome:
     """An engine's result in the oracle's words."""
-    arrivals, activities = [], []
+    arrivals, slices = [], []
     for row in result.log if result.log is not None else ():
-        time_ps, pe, kind = int(row["time_ps"]), int(row["pe"]), MESSAGE_KINDS[row["kind"]]
-        event = EVENT_KINDS[row["event"]]
+        r = dict(zip(row.dtype.names, row.item(), strict=True))
+        event, time_ps = EVENT_KINDS[r.pop("event")], r.pop("time_ps")
         if event == "arrival":
-            source, number = int(row["source"]), int(row["number"])
-            arrivals.append((time_ps, pe, source, number, kind, int(row["payload_bytes"])))
+            sent = (r["other"], r["number"], MESSAGE_KINDS[r["kind"]], r["payload_bytes"])
+            arrivals.append((time_ps, r["pe"], *sent))
         else:
-            name = event if event == "compute" else f"receive {kind}"
-            activities.append((time_ps, pe, name, int(row["end_ps"]), int(row["tests"])))
+            slices.append(Slice(begin=time_ps, what=event, end=r.pop("end_ps"), **r))
+    slices.sort(key=lambda s: s.pe)
     tested_rays = [] if result.tested_rays is None else result.tested_rays.tolist()
     tested_objects = [] if result.tested_objects is None else result.tested_objects.tolist()
     return Outcome(
@@ -68,6 +68,19 @@ def outcome_of(result: Result) -> Outcome:
         events=result.events,
         rules_never_fired=result.rules_never_fired,
         arrivals=sorted(arrivals),
-        activities=sorted(activities, key=lambda row: row[:2]),
+        activities=activities_of(slices),
+        slices=slices,
         tested=list(zip(tested_rays, tested_objects, strict=True)),
     )
+
+
+def activities_of(slices: list[Slice]) -> list[tuple[int, int, str, int, int]]:
+    """(begin, PE, kind, end, tests): what is sent belongs to the activity that it follows."""
+    activities: list[tuple[int, int, str, int, int]] = []
+    for each in slices:
+        if each.what == "send":
+            activities[-1] = (*activities[-1][:3], each.end, activities[-1][4])
+        else:
+            kind = f"receive {MESSAGE_KINDS[each.kind]}" if each.what == "receive" else each.what
+            activities.append((each.begin, each.pe, kind, each.end, each.tests))
+    return sorted(activities, key=lambda row: row[:2])

@@ -2,7 +2,8 @@
 
     python experiments/accuracy/against_mitsuba.py [RAYS of each depth, default 20000]
 
-The comparison is that of tests/verify/test_mitsuba.py (install '.[test]'), on pictures of 256 x 256.
+The comparison is that of tests/verify/test_mitsuba.py (install
+'.[test]'), on pictures of 256 x 256.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ RESOLUTION = 256
 
 
 def main() -> None:
+    """Print and write a row per scene."""
     n_rays = int(sys.argv[1]) if len(sys.argv) > 1 else 20_000
     rows = []
     for spec in (*SPD, *MESHES):

@@ -93,10 +93,11 @@ def row(here: Workload, there: Workload, ratio: float, size: float) -> dict[str,
     mine, other = same_rays(here, there)
     lists = itineraries(here), itineraries(there)
     same_hit = here.hits[mine] == there.hits[other]
+    shadow = here.kinds[mine] == SHADOW
     same_tests = np.array(
         [lists[0][i] == lists[1][j] for i, j in zip(mine, other, strict=True)], dtype=bool
     )
-    hit = same_hit & (here.hits[mine] >= 0) & (here.kinds[mine] != SHADOW)
+    hit = same_hit & (here.hits[mine] >= 0) & ~shadow
     moved_by = np.abs(here.hit_distances[mine] - there.hit_distances[other] / ratio)[hit] / size
     objects, concurrents = zip(results(here), results(there), strict=True)
     owners = [
@@ -107,7 +108,8 @@ def row(here: Workload, there: Workload, ratio: float, size: float) -> dict[str,
         "rays": here.n_rays,
         "rays_there": there.n_rays,
         "rays_lost": here.n_rays - len(mine),
-        "share_other_hit": f"{1 - same_hit.sum() / here.n_rays:.6f}",
+        "share_other_hit": f"{(~same_hit & ~shadow).sum() / here.n_rays:.6f}",
+        "share_other_blocker": f"{(~same_hit & shadow).sum() / here.n_rays:.6f}",
         "share_other_itinerary": f"{1 - same_tests.sum() / here.n_rays:.6f}",
         "largest_move_of_a_hit_in_sizes": f"{moved_by.max():.1e}",
         "share_other_owner": f"{(owners[0] != owners[1]).mean():.4f}",

@@ -9,6 +9,10 @@ from typing import Any
 import click
 
 from simmpp.errors import ConfigError
+from simmpp.units import picoseconds
+
+LAST_PS = (1 << 63) - 1
+"""Later than any run ends."""
 
 
 class FiniteRange(click.FloatRange):
@@ -40,6 +44,23 @@ class NamedPath(click.Path):
         if value == "":
             raise ConfigError(f"{_named(param)}: value '': expected the name of a file or folder")
         return super().convert(value, param, ctx)
+
+
+def window_of(text: str, option: str) -> tuple[int, int]:
+    """``START:END``, two times with units, in picoseconds.
+
+    Without START it begins at 0, without END it has no end. Raises ConfigError for anything else.
+    """
+    start, colon, end = text.partition(":")
+    try:
+        start_ps = picoseconds(start) if start.strip() else 0
+        end_ps = picoseconds(end) if end.strip() else LAST_PS
+    except ConfigError as error:
+        raise ConfigError(f"{option}: {error}") from None
+    if not colon or start_ps >= end_ps:
+        problem = "expected START:END such as '0 ms:5 ms', START before END"
+        raise ConfigError(f"{option}: value {text!r}: {problem}")
+    return start_ps, end_ps
 
 
 def _named(param: click.Parameter | None) -> str:

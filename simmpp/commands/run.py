@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, window_of
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
     from rich.progress import TaskID
 
+    from simmpp.engine.log import Sink
+    from simmpp.policy.parameters import PolicyParameters
     from simmpp.sweeps.config import Config
     from simmpp.sweeps.point import Point, PolicyRun
 
@@ -32,6 +38,24 @@ VERIFY_FAILED = 1
 @click.option("--out", type=NamedPath(), help="Folder for run.json and results.csv.")
 @click.option("--picture", type=NamedPath(), help="Write the picture as PNG.")
 @click.option(
+    "--timeline",
+    type=NamedPath(),
+    metavar="FILE",
+    help="Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
+)
+@click.option(
+    "--timeline-window",
+    "window",
+    metavar="START:END",
+    help="The part of the run that --timeline writes, such as '0 ms:5 ms'; all of it by default.",
+)
+@click.option(
+    "--figures",
+    type=NamedPath(),
+    metavar="DIR",
+    help="Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
+)
+@click.option(
     "--verify",
     is_flag=True,
     help="Make the picture again from the tests that the simulated PEs did, and compare.",
@@ -42,6 +66,9 @@ def run_command(
     overrides: tuple[str, ...],
     out: Path | None,
     picture: Path | None,
+    timeline: Path | None,
+    window: str | None,
+    figures: Path | None,
     verify: bool,
 ) -> None:
     """Compare dataflow policies on one scene and one machine.
@@ -58,16 +85,29 @@ def run_command(
     config = load_config(config_path, overrides)
     writable(picture, "--picture", ".png")
     folder(out, "--out")
+    window_ps = None if window is None else window_of(window, "--timeline-window")
+    _check_timeline(timeline, window_ps)
+    folder(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(
             "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
             "are for simmpp sweep"
         )
-    run(config, out=out, picture=picture, verify=verify)
+    looks = Looks(picture, timeline, window_ps, figures)
+    run(config, out=out, looks=looks, verify=verify)
 
 
-def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool) -> None:
+class Looks(NamedTuple):
+    """What is to be written for people to look at."""
+
+    picture: Path | None
+    timeline: Path | None
+    window_ps: tuple[int, int] | None
+    figures: Path | None
+
+
+def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None:
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
@@ -75,20 +115,67 @@ def run(config: Config, *, out: Path | None, picture: Path | None, verify: bool)
     from simmpp.sweeps.point import make_point, refuse_models
 
     refuse_models(config)
-    if picture or verify:
-        _require_scene(config, "--picture" if picture else "--verify")
+    if looks.picture or verify:
+        _require_scene(config, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config))
-    if picture:
-        _write_picture(point, picture)
+    if looks.picture:
+        _write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
     try:
-        _simulate(point, runs, record_tests=verify)
+        with _recorders(point, looks) as recorders:
+            _simulate(point, runs, recorders, record_tests=verify)
     finally:
         if out and runs:
             _write(point, runs, out)
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
+
+
+def _check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
+    from simmpp.commands.files import writable
+    from simmpp.errors import ConfigError
+    from simmpp.report.timeline.recorder import SUFFIXES
+
+    if path is None and window is not None:
+        raise ConfigError("--timeline-window: expected --timeline FILE beside it")
+    if path is not None and not path.name.lower().endswith(SUFFIXES):
+        expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
+        raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
+    writable(path, "--timeline")
+
+
+class Recorder(Protocol):
+    """Watches the runs of a point, one after the other."""
+
+    needs_hops: bool
+    """Whether links are to be counted for each ray."""
+
+    def begin(self, policy: PolicyParameters) -> Sink:
+        """What gets the event log of a policy's run."""
+
+    def end(self, run: PolicyRun) -> None:
+        """The run that was begun last is over."""
+
+
+@contextmanager
+def _recorders(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
+    from simmpp.report.timeline.slices import Window
+
+    with ExitStack() as stack:
+        recorders: list[Recorder] = []
+        if looks.timeline is not None:
+            from simmpp.report.timeline.recorder import TimelineRecorder
+
+            window = Window(*looks.window_ps) if looks.window_ps else None
+            timeline = TimelineRecorder(looks.timeline, point.machine, window)
+            stack.callback(timeline.close)
+            recorders.append(timeline)
+        if looks.figures is not None:
+            from simmpp.report.motion.recorder import FiguresRecorder
+
+            recorders.append(FiguresRecorder(looks.figures, point))
+        yield recorders
 
 
 def _require_scene(config: Config, option: str) -> None:
@@ -99,7 +186,9 @@ def _require_scene(config: Config, option: str) -> None:
         raise ConfigError(problem, where=option)
 
 
-def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> None:
+def _simulate(
+    point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
+) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
     from simmpp.sweeps.point import run_point
@@ -113,7 +202,26 @@ def _simulate(point: Point, runs: list[PolicyRun], *, record_tests: bool) -> Non
                 tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
             bars.update(tasks[title], completed=n_rays - rays_left)
 
-        runs.extend(run_point(point, record_tests=record_tests, progress=progress))
+        def log_of(parameters: PolicyParameters) -> Sink:
+            sinks = [recorder.begin(parameters) for recorder in recorders]
+
+            def hand_on(rows: NDArray[np.void]) -> None:
+                for sink in sinks:
+                    sink(rows)
+
+            return hand_on
+
+        each = run_point(
+            point,
+            record_tests=record_tests,
+            record_hops=any(recorder.needs_hops for recorder in recorders),
+            log_of=log_of if recorders else None,
+            progress=progress,
+        )
+        for run in each:
+            runs.append(run)
+            for recorder in recorders:
+                recorder.end(run)
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:

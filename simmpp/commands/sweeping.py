@@ -113,11 +113,11 @@ def progress_of_sweep() -> Iterator[Watcher]:
         yield Lines()
         return
     bars = Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.completed:.0f} of {task.total:.0f}"),
         TimeRemainingColumn(),
-        TextColumn("{task.fields[more]}"),
+        TextColumn("{task.fields[more]}", markup=False),
         console=console,
         transient=True,
     )

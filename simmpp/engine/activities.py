@@ -21,12 +21,11 @@ from simmpp.engine.layout import (
     UNPACK,
     Run,
 )
-from simmpp.engine.log import note_begin, note_end
+from simmpp.engine.log import note_compute, note_receive
 from simmpp.engine.memory import (
     copy_costs,
     itinerary_objects,
     itinerary_offsets,
-    log,
     messages,
     messages_marks,
     object_bytes,
@@ -75,19 +74,16 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
     pe.settled_load = pe.load
-    if s.logs:
-        note_end(s, me, now_ps)
     if message == NONE and pe.n_ready == 0:
         return SLEEP
     s.activities += 1
     s.phase = DISPATCH
-    if s.logs:
-        note_begin(s, me, message, now_ps)
     if message != NONE:
         s.consumed = 1
         next_ps = receive(s, me, message, now_ps)
     else:
         next_ps = compute(s, me, now_ps)
+    pe.peak_object_bytes = max(pe.peak_object_bytes, pe.held_bytes)
     pe.peak_bytes = max(pe.peak_bytes, pe.held_bytes + pe.load * s.ray_bytes)
     return next_ps
 
@@ -100,15 +96,17 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     clock_ps += copy_ps(copy_costs(s)[UNPACK + m.kind], m.payload_bytes)
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
-    if m.kind == REQUEST:
-        payload_bytes = object_bytes(s)[m.object]
-        clock_ps = send(s, me, m.source, OBJECT, m.object, NONE, NONE, 0, payload_bytes, clock_ps)
-    elif m.kind == OBJECT:
+    if m.kind == OBJECT:
         admit_object(s, me, m.object)
     elif m.kind == RAYS:
         pe.load += m.n
         pe.peak_rays = max(pe.peak_rays, pe.load)
         make_ready(s, me, m.first, m.last, m.n)
+    if s.logs:
+        note_receive(s, me, message, now_ps, clock_ps)
+    if m.kind == REQUEST:
+        payload_bytes = object_bytes(s)[m.object]
+        clock_ps = send(s, me, m.source, OBJECT, m.object, NONE, NONE, 0, payload_bytes, clock_ps)
     s.received += 1
     pe.communication_ps += clock_ps - now_ps
     m.kind = NONE
@@ -134,12 +132,12 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     start_ps = now_ps + s.probe_ps
     clock_ps = start_ps
     pe.received_load = 0
-    tests = 0
+    tests, done = 0, s.rays_done
     while tests < s.quantum and pe.n_ready > 0:
         ray = pe.ready_first
-        end = itinerary_offsets(s)[ray + 1]
-        while rays(s)[ray].at < end:
-            missing = itinerary_objects(s)[rays(s)[ray].at]
+        first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
+        while first + rays(s)[ray].tested < end:
+            missing = itinerary_objects(s)[first + rays(s)[ray].tested]
             if rays(s)[ray].granted == 0 and not is_in_memory(s, me, missing):
                 pop_ready(s, me)
                 file_ray(s, me, ray, missing)
@@ -154,7 +152,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             pop_ready(s, me)
             finish_ray(s, me, ray, clock_ps)
     if s.logs:
-        log(s)[pe.open_event].tests = tests
+        note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
     pe.compute_ps += clock_ps - start_ps
     pe.communication_ps += s.probe_ps
     return clock_ps
@@ -167,7 +165,7 @@ def _test(s: Run, me: int, ray: int, tested: int) -> None:
         tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, tested
     s.tests += 1
     r = rays(s)[ray]
-    r.at += 1
+    r.tested += 1
     if r.granted or s.transient > 0:
         want = find(wants(s), me * s.n_objects + tested)
         if want != NONE:

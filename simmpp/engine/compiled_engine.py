@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from simmpp.compiled import njit_reading as njit
 from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.alone import run_alone
-from simmpp.engine.event_heap import DEPARTURE, EVENT_KEY, INSTANT, pop, push
+from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, pop, push, replace_first
 from simmpp.engine.layout import NONE, Row, Run
 from simmpp.engine.log import note_arrival
 from simmpp.engine.memory import messages, messages_marks, outbox
-from simmpp.engine.sending import depart
+from simmpp.engine.sending import move_head
 from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.engine.tables import USED
@@ -69,10 +69,14 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = self.state["logs"] or self.state["record_tests"]
-        return not records and run_alone(self.state.runs)
+        if records or not run_alone(self.state.runs):
+            return False
+        if self._progress is not None:
+            self._progress(0)
+        return True
 
     def _make_room(self) -> None:
-        self.state.ensure_room()
+        self.state.ensure_room(int(self._heap[0]["time_ps"]) if len(self._heap) else 0)
         needed = len(self.state.messages) + len(self._lines) + 1
         if len(self._heap) < needed:
             heap = np.zeros(needed, EVENT_KEY)
@@ -103,21 +107,22 @@ def _run(
             return FINISHED
         if _short_of_room(s):
             return FULL
+        if rank >= HEAD:
+            move_first(runs, heap, loop)
+            continue
         pop(heap, loop)
-        if message == NONE:
-            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
-        elif rank < INSTANT:
+        if message != NONE:
             _arrive(runs, heap, lines, loop, message, time_ps)
         else:
-            _let_arrive(runs, heap, loop, message, depart(runs, message))
+            _step(runs, heap, lines, loop, rank - INSTANT, time_ps)
     return PAUSED
 
 
 @njit
 def _short_of_room(s: Run) -> bool:
-    room = s.messages_n - messages_marks(s)[USED]
-    short = room < s.outbox_n and room < s.rays_left + 2 * s.processors
-    return short or (s.logs and s.n_logged >= s.log_n - 2)
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    short = s.messages_n - messages_marks(s)[USED] < most
+    return short or (s.logs and s.log_n - s.n_logged < most + 2)
 
 
 @njit
@@ -169,9 +174,9 @@ def _step(
         row = outbox(s)[i]
         m = messages(s)[row]
         if s.contends:
-            push(heap, loop, m.depart_ps, DEPARTURE + m.source, m.number, row)
+            push(heap, loop, m.head_ps, HEAD + m.source, m.number, row)
         else:
-            _let_arrive(runs, heap, loop, row, m.arrival_ps)
+            push(heap, loop, m.arrival_ps, _arrival_rank(m), m.number, row)
     if next_ps == SLEEP:
         line.asleep = 1
     else:
@@ -179,12 +184,19 @@ def _step(
 
 
 @njit
-def _let_arrive(
-    runs: NDArray[np.void], heap: NDArray[np.void], loop: Row, message: int, arrival_ps: int
-) -> None:
+def move_first(runs: NDArray[np.void], heap: NDArray[np.void], loop: Row) -> None:
+    """The first event is the head of a message: it goes on, or the message arrives."""
+    rank, number, message = heap[0].rank, heap[0].number, heap[0].message
+    next_ps = move_head(runs, message)
     m = messages(runs[0])[message]
-    rank = (np.int64(m.destination) << 31) | m.source
-    push(heap, loop, arrival_ps, rank, m.number, message)
+    if m.arrival_ps != NONE:
+        rank = _arrival_rank(m)
+    replace_first(heap, loop, next_ps, rank, number, message)
+
+
+@njit
+def _arrival_rank(m: Row) -> int:
+    return (np.int64(m.destination) << 31) | m.source
 
 
 @njit

@@ -1,7 +1,7 @@
 """The queue of what is going to happen: a binary heap of events, ordered by time and ties.
 
 Ties are broken as in the readable engine: arrivals by (destination, source, send number), then the
-instants of PEs by (PE, number), then departures by (source, send number).
+instants of PEs by (PE, number), then heads of messages by (source, send number).
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from simmpp.engine.layout import Row
 
 INSTANT = 1 << 62
 """Rank of a PE's own instants, above all pairs of PEs."""
-DEPARTURE = INSTANT + (1 << 32)
-"""Rank of messages that enter a network with contention, above all instants."""
+HEAD = INSTANT + (1 << 32)
+"""Rank of heads of messages that come to a port or link, above all instants."""
 
 EVENT_KEY = np.dtype(
     [
         ("time_ps", "i8"),
-        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or DEPARTURE + source
+        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or HEAD + source
         ("number", "i8"),  # the sender's send number, or the PE's instants so far
-        ("message", "i8"),  # that arrives or departs; NONE at an instant
+        ("message", "i8"),  # that arrives or whose head moves; NONE at an instant
     ]
 )
 
@@ -65,6 +65,14 @@ def pop(heap: NDArray[np.void], loop: Row) -> None:
     """Remove the first event of the binary heap."""
     loop.size -= 1
     last = heap[loop.size]
+    replace_first(heap, loop, last.time_ps, last.rank, last.number, last.message)
+
+
+@njit
+def replace_first(
+    heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int, message: int
+) -> None:
+    """Remove the first event and add one: quicker than both, above all if it soon follows."""
     at, child = 0, 1
     while child < loop.size:
         right = child + 1
@@ -72,8 +80,9 @@ def pop(heap: NDArray[np.void], loop: Row) -> None:
             r = heap[right]
             if _before(r, heap[child].time_ps, heap[child].rank, heap[child].number):
                 child = right
-        if not _before(heap[child], last.time_ps, last.rank, last.number):
+        if not _before(heap[child], time_ps, rank, number):
             break
         _put(heap, at, heap[child])
         at, child = child, 2 * child + 1
-    _put(heap, at, last)
+    heap[at].time_ps, heap[at].rank = time_ps, rank
+    heap[at].number, heap[at].message = number, message

@@ -37,14 +37,21 @@ def _release(s: Run, me: int, row: int) -> None:
     n = want.n if s.merge_requests else 1
     head = want.first
     tail = head
-    rays(s)[tail].granted = 1
+    _grant(s, tail, want.hops)
     for _ in range(n - 1):
         tail = rays(s)[tail].next
-        rays(s)[tail].granted = 1
+        _grant(s, tail, want.hops)
     want.first = rays(s)[tail].next
     want.n -= n
     want.pinned += n
     make_ready(s, me, head, tail, n)
+
+
+@njit
+def _grant(s: Run, ray: int, hops: int) -> None:
+    """What the ray was filed for has come to it, the same way back."""
+    rays(s)[ray].granted = 1
+    rays(s)[ray].hops += hops
 
 
 @njit

@@ -32,17 +32,18 @@ PE = np.dtype(
         ("held_bytes", "i8"),  # resident and fetched objects
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
+        ("peak_object_bytes", "i8"),  # of held_bytes
         ("n_transient", "i4"),
-        ("open_event", "i8"),  # row of the activity under way in the event log, or NONE
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
     ],
     align=True,
 )
 RAY = np.dtype(
     [
-        ("at", "i8"),  # next entry of itinerary_objects
+        ("tested", "i4"),  # objects of its itinerary that it has been tested against
         ("next", "i4"),  # next ray of the list that this ray is in
         ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("hops", "i4"),  # with record_hops: links crossed for it
     ],
     align=True,
 )
@@ -59,6 +60,7 @@ WANT = np.dtype(
         ("pinned", "i4"),  # released rays that have not made their test yet
         ("transient", "i4"),  # 1: in transient memory
         ("partner", "i4"),  # row of the owner in ``partners``, if the policy sends
+        ("hops", "i4"),  # with record_hops: links to the owner
     ],
     align=True,
 )
@@ -77,13 +79,16 @@ PARTNER = np.dtype(
 MESSAGE = np.dtype(
     [
         ("depart_ps", "i8"),
-        ("arrival_ps", "i8"),
         ("number", "i8"),  # the sender's send number
         ("load", "i8"),  # the sender's, at packing, without the rays in the message
         ("payload_bytes", "i8"),
-        ("chain", "i4"),
-        ("source", "i4"),
+        ("arrival_ps", "i8"),
+        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
+        ("head_ps", "i8"),  # when its head is at the next link or port,
+        ("at", "i4"),  # and the PE where that is
         ("destination", "i4"),
+        ("source", "i4"),
+        ("chain", "i4"),
         ("object", "i4"),
         ("first", "i4"),  # rays
         ("last", "i4"),
@@ -97,17 +102,21 @@ COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
 
 EVENT = np.dtype(
     [
-        ("time_ps", "i8"),  # when a message arrives, or an activity begins
-        ("end_ps", "i8"),  # when the activity ends, dispatch included; of an arrival: time_ps
-        ("pe", "i4"),  # destination of an arrival
-        ("event", "i4"),  # ARRIVAL, RECEIVE or COMPUTE
-        ("source", "i4"),  # sender of the message; -1 for COMPUTE
-        ("kind", "i4"),  # kind of the message; -1 for COMPUTE
-        ("number", "i8"),  # the sender's send number; -1 for COMPUTE
+        ("time_ps", "i8"),  # when a message arrives, or the PE begins
+        ("end_ps", "i8"),  # when the PE is done, a message sent departs; of an arrival: time_ps
+        ("number", "i8"),  # the sender's send number; NONE if there is no message or it never left
         ("payload_bytes", "i8"),
         ("tests", "i8"),
+        ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
+        ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
+        ("rays", "i4"),  # in the message; finished by a COMPUTE
+        ("load", "i4"),  # of the PE, when it is done
+        ("ready", "i4"),  # rays of the load that are ready then; the others wait
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("kind", "i2"),  # of the message; NONE without one
     ]
 )
+"""One row of the event log, a cache line."""
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 
@@ -197,6 +206,7 @@ PARAMETERS = (
     "refresh_ps",  # NONE: no refresh
     "merge_requests",
     "record_tests",
+    "record_hops",
     "logs",
 )
 COUNTERS = (
@@ -225,5 +235,5 @@ RUN = np.dtype(
 PIGGYBACK, EXACT, NO_INFO = range(3)
 LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
 BEGIN, DISPATCH = range(2)
-ARRIVAL, RECEIVE, COMPUTE = range(3)
+ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
 PACK, UNPACK = 0, 4

@@ -41,7 +41,7 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     pe = pes(s)[me]
     child, end = child_offsets(s)[ray], child_offsets(s)[ray + 1]
     if child < end:
-        for each in range(child, end - 1):
+        for each in range(child, end):
             rays(s)[each].next = each + 1
         make_ready(s, me, child, end - 1, end - child)
     pe.load += end - child - 1

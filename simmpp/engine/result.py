@@ -35,20 +35,35 @@ class Result:
     """(nb,) int64: startups, packing, unpacking, probes."""
     waiting_ps: NDArray[np.int64]
     """(nb,) int64: makespan - compute - communication."""
-    peak_rays: int
-    """Rays held (ready and waiting) by the PE that ever held most."""
-    peak_bytes: int
-    """Bytes held (resident and fetched objects, rays) by the PE that ever held most."""
+    pe_peak_rays: NDArray[np.int64]
+    """(nb,) int64: most rays that each PE held."""
+    pe_peak_bytes: NDArray[np.int64]
+    """(nb,) int64: most bytes that each PE held."""
+    pe_peak_object_bytes: NDArray[np.int64]
+    """(nb,) int64: most bytes of objects, resident and fetched, that each PE held."""
     events: int
     """Activities and arrivals."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     log: NDArray[np.void] | None = None
     """Event log, if asked for (see ``engine.log``)."""
+    ray_hops: NDArray[np.int32] | None = None
+    """(n,) int32, with record_hops: links crossed for each ray, by itself in a message or by the
+    requests and objects that it waited for."""
     tested_rays: NDArray[np.int32] | None = None
     """(tests,) int32, with record_tests: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None
     """(tests,) int32, with record_tests: the object of each test."""
+
+    @property
+    def peak_rays(self) -> int:
+        """Rays held (ready and waiting) by the PE that ever held most."""
+        return int(self.pe_peak_rays.max())
+
+    @property
+    def peak_bytes(self) -> int:
+        """Bytes held (resident and fetched objects, rays) by the PE that ever held most."""
+        return int(self.pe_peak_bytes.max())
 
     @property
     def messages(self) -> int:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit_reading as njit
-from simmpp.engine.layout import NONE, PACK, Run
+from simmpp.engine.layout import NONE, PACK, Row, Run
+from simmpp.engine.log import note_send
 from simmpp.engine.memory import (
     copy_costs,
     free_ps,
@@ -21,7 +22,7 @@ from simmpp.engine.memory import (
 )
 from simmpp.engine.tables import take
 from simmpp.engine.waiting import note_exchange, partner_of
-from simmpp.machine.links import book
+from simmpp.machine.links import ejection_port, injection_port, link_towards
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.machine.network import transfer_ps
 from simmpp.machine.torus import hops
@@ -59,7 +60,9 @@ def send(
     m.object, m.first, m.last, m.n = wanted, first, last, n
     m.payload_bytes, m.load = payload_bytes, pe.load
     m.depart_ps, m.number = depart_ps, pe.messages_sent
-    if s.contends == 0:
+    if s.contends:
+        inject(s, m)
+    else:
         m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
     pe.messages_sent += 1
     sent_by_kind(s)[kind] += 1
@@ -69,6 +72,8 @@ def send(
         partner_rows(s)[partner].sent_ps = depart_ps
         if kind in (OBJECT, RAYS):
             note_exchange(s, me, partner)
+    if s.logs:
+        note_send(s, me, row, now_ps)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return depart_ps
@@ -86,17 +91,34 @@ def flight_ps(s: Run, source: int, destination: int, payload_bytes: int) -> int:
 
 
 @njit
-def depart(runs: NDArray[np.void], message: int) -> int:
-    """A message enters a network with contention; returns its arrival, after all booked before it.
+def inject(s: Run, m: Row) -> None:
+    """Take the port of the sender, which no one else uses and which its messages reach in order."""
+    m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
+    m.at, m.arrival_ps = m.source, NONE
+    m.head_ps = _take(s, injection_port(m.source), m.depart_ps, m.busy_ps) + s.latency_ps
 
-    No time in ``free_ps`` exceeds an arrival, so none can wrap if no arrival exceeds the clock.
+
+@njit
+def move_head(runs: NDArray[np.void], message: int) -> int:
+    """The head of a message is at a link or at the last port: it takes it as soon as that is free.
+
+    Returns when the head is at the next one, or when the message arrives, which is known then.
     """
     s: Run = runs[0]
     m = messages(s)[message]
-    busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
-    torus, ways = (s.x, s.y, s.z), free_ps(s)
-    times = (m.depart_ps, s.latency_ps, s.hop_latency_ps, busy_ps)
-    m.arrival_ps = book(ways, torus, m.source, m.destination, *times)
-    if m.arrival_ps > CLOCK_LIMIT_PS:
+    if m.at == m.destination:
+        m.arrival_ps = _take(s, ejection_port(m.at), m.head_ps, m.busy_ps) + m.busy_ps
+        return m.arrival_ps
+    link, m.at = link_towards((s.x, s.y, s.z), m.at, m.destination)
+    m.head_ps = _take(s, link, m.head_ps, m.busy_ps) + s.hop_latency_ps
+    return m.head_ps
+
+
+@njit
+def _take(s: Run, row: int, now_ps: int, busy_ps: int) -> int:
+    """Keep a link or port busy from when it is free; returns when that is."""
+    start_ps = max(now_ps, free_ps(s)[row])
+    if start_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
-    return m.arrival_ps
+    free_ps(s)[row] = start_ps + busy_ps
+    return start_ps

@@ -1,10 +1,10 @@
 """The readable engine: PEs are SimPy processes, messages are events.
 
 It stays lean so that whole pictures can be run: one event per message, scheduled at its arrival
-(with contention also one at its departure), inboxes are plain deques, and a sleeping PE has one
-event to wake it. Ties in time are ordered by the priority of an event, a whole number made of (0,
-destination, source, send number) for arrivals, of (1, PE, number) for the PEs' own instants and of
-(2, source, send number) for departures.
+(with contention one more at each link and port), inboxes are plain deques, and a sleeping PE has
+one event to wake it. Ties in time are ordered by the priority of an event, a whole number made of
+(0, destination, source, send number) for arrivals, of (1, PE, number) for the PEs' own instants
+and of (2, source, send number) for heads of messages at links and ports.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from simmpp.engine.activities import SLEEP, step
 from simmpp.engine.entry import entry_point
 from simmpp.engine.layout import BEGIN, MESSAGE, NONE
 from simmpp.engine.log import note_arrival
-from simmpp.engine.sending import depart
+from simmpp.engine.sending import move_head
 from simmpp.engine.starved import starved
 from simmpp.engine.state import State
 from simmpp.errors import ModelError
 
-_DEPART_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
+_HEAD_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     list(MESSAGE.names or ()).index(name)
-    for name in ("depart_ps", "arrival_ps", "number", "source", "destination")
+    for name in ("head_ps", "arrival_ps", "number", "source", "destination")
 )
 _FIRST = -1  # priority before all others of its instant
 _PROGRESS_EVERY = 4096
@@ -40,7 +40,7 @@ class SimpyRun:
         self.arrivals = 0
         self._progress = progress
         self._note_arrival = entry_point(note_arrival, state.runs, 0)
-        self._depart = entry_point(depart, state.runs, 0)
+        self._move_head = entry_point(move_head, state.runs, 0)
         self._step = entry_point(step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
@@ -76,8 +76,8 @@ class SimpyRun:
         phase = BEGIN
         yield self._instant(me, 0)
         while True:
-            state.ensure_room()
             now_ps = environment.now
+            state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = step(runs, me, phase, message, now_ps)
             phase, consumed, n_sent = state.report.tolist()
@@ -105,24 +105,30 @@ class SimpyRun:
         self._environment.schedule(event, priority, delay_ps)
 
     def _carry(self, n_sent: int) -> None:
-        """Messages of the outbox travel; with contention they book their way as they depart."""
+        """Messages of the outbox travel; with contention from one port or link to the next."""
         for row in self.state.arrays["outbox"][:n_sent].tolist():
             if self._contends:
-                self._let_depart(row)
+                message = self.state.messages[row].item()
+                priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
+                self._schedule_head(row, priority, message[_HEAD_PS])
             else:
                 self._let_arrive(row)
 
-    def _let_depart(self, row: int) -> None:
-        message = self.state.messages[row].item()
-        departure = _happened(self._environment, row)
-        departure.callbacks.append(self._enter_network)
-        priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
-        delay_ps = message[_DEPART_PS] - self._environment.now
-        self._environment.schedule(departure, priority, delay_ps)
+    def _schedule_head(self, row: int, priority: int, time_ps: int) -> None:
+        head = _happened(self._environment, (row, priority))
+        head.callbacks.append(self._move)
+        self._environment.schedule(head, priority, time_ps - self._environment.now)
 
-    def _enter_network(self, departure: Event) -> None:
-        self._depart(self.state.runs, departure.value)
-        self._let_arrive(departure.value)
+    def _move(self, head: Event) -> None:
+        """The head of a message is at a port or link: it goes on, or the message arrives."""
+        row, priority = head.value
+        if self._logs:
+            self.state.ensure_room(self._environment.now)
+        next_ps = self._move_head(self.state.runs, row)
+        if self.state.messages["arrival_ps"][row] != NONE:
+            self._let_arrive(row)
+        else:
+            self._schedule_head(row, priority, next_ps)
 
     def _let_arrive(self, row: int) -> None:
         message = self.state.messages[row].item()
@@ -139,7 +145,7 @@ class SimpyRun:
         self.arrivals += 1
         self._inboxes[destination].append(row)
         if self._logs:
-            self.state.ensure_room()
+            self.state.ensure_room(self._environment.now)
             self._note_arrival(self.state.runs, row)
         asleep = self._asleep[destination]
         if asleep is not None:

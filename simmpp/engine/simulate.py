@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.fit import check_fit
 from simmpp.engine.layout import NONE
-from simmpp.engine.log import events
+from simmpp.engine.log import Collector, Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State, new_state
@@ -39,19 +40,24 @@ def simulate(
     *,
     engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
-    log: bool = False,
+    log: bool | Sink = False,
     record_tests: bool = False,
+    record_hops: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Replay a workload on a simulated machine.
 
-    ``log`` keeps the event log, ``record_tests`` the (ray, object) pairs that PEs tested.
+    ``log`` keeps the event log in the result; a function gets its rows, (n,) EVENT, as they become
+    final, and nothing is kept. ``record_tests`` keeps the (ray, object) pairs that PEs tested,
+    ``record_hops`` the links that were crossed for each ray.
     ``progress`` is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
     are left and nothing is scheduled (a bug, or a policy that starves).
     """
     _check(workload, machine, placement, policy, engine, ready_order)
+    collector = Collector()
+    sink = collector if log is True else log or None
     state = new_state(
         workload,
         machine,
@@ -59,14 +65,17 @@ def simulate(
         policy,
         ready_order=ready_order,
         record_tests=record_tests,
-        log=log,
+        record_hops=record_hops,
+        log=sink,
     )
     run = ENGINES[engine](state, progress)
     try:
         run.run()
     except OverflowError:
         raise beyond_the_clock() from None
-    return _conclude(state, run.arrivals, policy, engine)
+    state.close_log()
+    rows = collector.rows() if log is True else None
+    return _conclude(state, run.arrivals, policy, engine, rows)
 
 
 def _check(
@@ -87,7 +96,13 @@ def _check(
     check_counters(workload, machine)
 
 
-def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str) -> Result:
+def _conclude(
+    state: State,
+    arrivals: int,
+    policy: PolicyParameters,
+    engine: str,
+    log: NDArray[np.void] | None,
+) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing."""
     makespan_ps = state["last_ray_ps"]
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
@@ -110,11 +125,13 @@ def _conclude(state: State, arrivals: int, policy: PolicyParameters, engine: str
         compute_ps=compute_ps,
         communication_ps=communication_ps,
         waiting_ps=waiting_ps,
-        peak_rays=int(state.pes["peak_rays"].max()),
-        peak_bytes=int(state.pes["peak_bytes"].max()),
+        pe_peak_rays=state.pes["peak_rays"].copy(),
+        pe_peak_bytes=state.pes["peak_bytes"].copy(),
+        pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
-        log=events(state, makespan_ps) if state["logs"] else None,
+        log=log,
+        ray_hops=state.arrays["rays"]["hops"].copy() if state["record_hops"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

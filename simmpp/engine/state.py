@@ -20,6 +20,7 @@ from simmpp.engine.layout import (
     RUN,
     Run,
 )
+from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
 from simmpp.engine.memory import pes, rays
 from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.tables import USED
@@ -38,7 +39,9 @@ class State:
     that are touched; the table of messages grows.
     """
 
-    def __init__(self, arrays: Arrays, parameters: dict[str, int]) -> None:
+    def __init__(self, arrays: Arrays, parameters: dict[str, int], log: Sink | None = None) -> None:
+        self.log = log
+        """What gets the event log, if there is one."""
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
@@ -68,14 +71,30 @@ class State:
         """(capacity,) MESSAGE: those in flight or in an inbox, and free places."""
         return self.arrays["messages"]
 
-    def ensure_room(self) -> None:
-        """See to it that all messages that one more step can send at most have a place."""
+    def ensure_room(self, now_ps: int) -> None:
+        """See to it that all messages that one more step can send at most have a place.
+
+        ``now_ps`` is the time of that step.
+        """
         room = len(self.messages) - self.arrays["messages_marks"][USED]
         most_sent = len(self.arrays["outbox"])
-        if room < most_sent and room < self["rays_left"] + 2 * len(self.pes):
+        most = min(most_sent, self["rays_left"] + 2 * len(self.pes))
+        if room < most:
             self._grow("messages", most_sent)
-        if self["logs"] and self["n_logged"] >= len(self.arrays["log"]) - 2:
-            self._grow("log", 0)
+        if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
+            self.runs["n_logged"] = hand_on(self._logged(), now_ps, self.log)
+            if len(self.arrays["log"]) - self["n_logged"] < most + 2 + LOG_ROWS:
+                self._grow("log", 0)
+
+    def close_log(self) -> None:
+        """Hand on what is left of the event log."""
+        if self.log is not None:
+            end_ps = self["last_ray_ps"]
+            self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
+            hand_on_last(self._logged(), end_ps, self.log)
+
+    def _logged(self) -> NDArray[np.void]:
+        return self.arrays["log"][: self["n_logged"]]
 
     def _grow(self, name: str, more: int) -> None:
         """Double an array, and a little more."""
@@ -93,15 +112,22 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
-    log: bool = False,
+    record_hops: bool = False,
+    log: Sink | None = None,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     everything = POLICIES[parameters.name].all_resident
-    arrays = _own_arrays(workload, placement, parameters, workload.n_tests if record_tests else 0)
+    n_recorded = workload.n_tests if record_tests else 0
+    arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    flags = {"depth_first": ready_order == "depth-first", "record_tests": record_tests, "logs": log}
-    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags)
+    flags = {
+        "depth_first": ready_order == "depth-first",
+        "record_tests": record_tests,
+        "record_hops": record_hops,
+        "logs": log is not None,
+    }
+    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
     return state
@@ -123,7 +149,12 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
 
 
 def _own_arrays(
-    workload: Workload, placement: Placement, parameters: PolicyParameters, n_recorded: int
+    workload: Workload,
+    placement: Placement,
+    parameters: PolicyParameters,
+    n_recorded: int,
+    *,
+    logs: bool,
 ) -> Arrays:
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     n_wants = 1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1))
@@ -154,10 +185,9 @@ def _own_arrays(
         "sort_items": max(n_objects, nb),
         "tested_rays": n_recorded,
         "tested_objects": n_recorded,
-        "log": 4096,
+        "log": 2 * LOG_ROWS + most_sent if logs else 0,
     }
     arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    arrays["rays"]["at"] = workload.itinerary_offsets[:-1]
     marks = ("wants_marks", "partners_marks", "messages_marks")
     return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
 
@@ -208,7 +238,6 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     for me in range(s.processors):
         pes(s)[me].ready_first = NONE
         pes(s)[me].ready_last = NONE
-        pes(s)[me].open_event = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
         rays(s)[ray].next = NONE
@@ -223,5 +252,6 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pe.load = pe.n_ready
         pe.settled_load = pe.n_ready
         pe.peak_rays = pe.n_ready
+        pe.peak_object_bytes = pe.held_bytes
         pe.peak_bytes = pe.held_bytes + pe.n_ready * s.ray_bytes
     s.rays_left = pixel_pes.size

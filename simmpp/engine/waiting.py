@@ -21,6 +21,7 @@ from simmpp.engine.memory import (
     wants,
 )
 from simmpp.engine.tables import Lists, add, append, find, remove, unlink
+from simmpp.machine.torus import hops
 
 
 @njit
@@ -80,10 +81,14 @@ def partner_of(s: Run, me: int, other: int) -> int:
 
 @njit
 def file_ray(s: Run, me: int, ray: int, wanted: int) -> None:
-    """A ray begins to wait, filed under (object, owner)."""
+    """A ray begins to wait, filed under (object, owner).
+
+    Whether it will be sent or the object fetched, something has to go to the owner for it.
+    """
     row = _want(s, me, wanted)
     want = want_rows(s)[row]
     rays(s)[ray].next = NONE
+    rays(s)[ray].hops += want.hops
     if want.n == 0:
         want.first = ray
     else:
@@ -113,6 +118,7 @@ def _want(s: Run, me: int, wanted: int) -> int:
         want.requests = 0
         want.pinned = 0
         want.transient = 0
+        want.hops = hops(s.x, s.y, s.z, me, owners(s)[wanted]) if s.record_hops else 0
         if s.sends:
             want.partner = partner_of(s, me, owners(s)[wanted])
     return row

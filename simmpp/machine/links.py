@@ -1,16 +1,14 @@
 """Links and ports that serve one message at a time: virtual cut-through with unbounded buffers.
 
-A message takes its source's injection port, the directed links of dimension-order routing and its
-destination's ejection port, each when it is free; then that is busy for the time of the message's
-bytes, while its head goes on. Messages book their whole way when they depart: one that departed
-later waits behind it even where it would get there first. What that hides is measured against
-first-come-first-served links in ``experiments/accuracy/contention.py``.
+The head of a message takes its source's injection port, the directed links of dimension-order
+routing and its destination's ejection port. Each serves whoever comes first: the head waits until
+it is free, then it is busy for the time of the message's bytes, while the head goes on. From the
+injection port to the first link the head takes the machine's latency (as every message pays it once
+between ports, anywhere else would give the same arrivals), over each link the hop latency. Heads
+that come at the same instant are served by (source, send number).
 """
 
 from __future__ import annotations
-
-import numpy as np
-from numpy.typing import NDArray
 
 from simmpp.compiled import njit_reading as njit
 
@@ -23,43 +21,39 @@ ROWS_PER_PE = 8
 
 
 @njit
-def book(
-    free_ps: NDArray[np.int64],
-    shape: tuple[int, int, int],
-    source: int,
-    destination: int,
-    depart_ps: int,
-    latency_ps: int,
-    hop_latency_ps: int,
-    busy_ps: int,
-) -> int:
-    """Let a message that occupies links for ``busy_ps`` depart; returns when it arrives.
-
-    ``free_ps`` (8 nb,) int64, from when on each link and port is free, is brought up to date. The
-    latency is paid behind the injection port; as all messages pay it once between ports, anywhere
-    else would give the same arrivals.
-    """
-    head_ps = _occupy(free_ps, source * ROWS_PER_PE + PORTS, depart_ps, busy_ps) + latency_ps
-    here, stride, axis = source, 1, X
-    for size in shape:
-        at, to = here // stride % size, destination // stride % size
-        forward = (to - at) % size
-        is_back = 1 if 2 * forward > size else 0
-        step = size - 1 if is_back else 1
-        for _ in range(size - forward if is_back else forward):
-            link = here * ROWS_PER_PE + axis + is_back
-            head_ps = _occupy(free_ps, link, head_ps, busy_ps) + hop_latency_ps
-            following = (at + step) % size
-            here += (following - at) * stride
-            at = following
-        stride *= size
-        axis += 2
-    return busy_ps + _occupy(free_ps, destination * ROWS_PER_PE + PORTS + 1, head_ps, busy_ps)
+def injection_port(pe: int) -> int:
+    """Its row."""
+    return pe * ROWS_PER_PE + PORTS
 
 
 @njit
-def _occupy(free_ps: NDArray[np.int64], row: int, head_ps: int, busy_ps: int) -> int:
-    """Take a link or port when it is free; returns when that is."""
-    start_ps = max(head_ps, free_ps[row])
-    free_ps[row] = start_ps + busy_ps
-    return start_ps
+def ejection_port(pe: int) -> int:
+    """Its row."""
+    return pe * ROWS_PER_PE + PORTS + 1
+
+
+@njit
+def link_towards(shape: tuple[int, int, int], here: int, destination: int) -> tuple[int, int]:
+    """Row of the link that leads from a PE to another one's, and the PE behind that link.
+
+    Dimension order x, y, z, the shortest way round, halfway towards +.
+    """
+    x_size, y_size, z_size = shape
+    here_row, row_to = here // x_size, destination // x_size
+    x, x_to = here - here_row * x_size, destination - row_to * x_size
+    if x != x_to:
+        return _link(here, X, 1, x_size, x, x_to)
+    z, z_to = here_row // y_size, row_to // y_size
+    y, y_to = here_row - z * y_size, row_to - z_to * y_size
+    if y != y_to:
+        return _link(here, Y, x_size, y_size, y, y_to)
+    return _link(here, Z, x_size * y_size, z_size, z, z_to)
+
+
+@njit
+def _link(here: int, row: int, stride: int, size: int, at: int, to: int) -> tuple[int, int]:
+    """The link from coordinate ``at`` of a ring of ``size`` on the way to another one."""
+    forward = to - at if to > at else to - at + size
+    if 2 * forward > size:
+        return here * ROWS_PER_PE + row + 1, here + (stride * (size - 1) if at == 0 else -stride)
+    return here * ROWS_PER_PE + row, here + (stride * (1 - size) if at + 1 == size else stride)

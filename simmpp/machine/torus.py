@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from simmpp.compiled import njit
 
 
@@ -36,3 +39,32 @@ def hops(x_size: int, y_size: int, z_size: int, source: int, destination: int) -
         + ring_distance(y_size, source_row % y_size, destination_row % y_size)
         + ring_distance(z_size, source_row // y_size, destination_row // y_size)
     )
+
+
+DIRECTIONS = ("+x", "-x", "+y", "-y", "+z", "-z")
+"""Links of a PE; link number 6 k + d leads from PE k in direction d."""
+
+
+@njit
+def route(
+    shape: tuple[int, int, int], source: int, destination: int, links: NDArray[np.int64]
+) -> int:
+    """Number the links that a message crosses, in order, into ``links``; returns how many.
+
+    Along x, then y, then z, the shortest way round, towards + where both are as long. ``links``
+    (X // 2 + Y // 2 + Z // 2,) int64 holds the longest route.
+    """
+    n, here, stride = 0, source, 1
+    for axis in range(3):
+        size = shape[axis]
+        at, to = here // stride % size, destination // stride % size
+        forward = (to - at) % size
+        is_back = 1 if 2 * forward > size else 0
+        for _ in range(size - forward if is_back else forward):
+            links[n] = 6 * here + 2 * axis + is_back
+            following = (at + (size - 1 if is_back else 1)) % size
+            here += (following - at) * stride
+            at = following
+            n += 1
+        stride *= size
+    return n

@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from simmpp.sweeps.columns import COLUMNS
 from simmpp.sweeps.config import Config, config_from_mapping, described
 from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.provenance import difference
-from simmpp.sweeps.tables import replaced, write_text
+from simmpp.sweeps.tables import read_csv, replaced, write_text
 
 PROFITS, RESULTS, RECORD = "profits.csv", "results.csv", "run.json"
 DIGESTS = "sha256"
@@ -82,23 +82,9 @@ def read_sweep(folder: Path) -> Sweep:
     for name, digest in dict(record.get(DIGESTS, {})).items():
         if _digest(folder / name) != digest:
             raise ValueError(f"{name} is not the file that {RECORD} was written with")
-    results = _rows(folder / RESULTS, COLUMNS)
-    profits = _rows(folder / PROFITS, profit_columns())
+    results = read_csv(folder / RESULTS, COLUMNS)
+    profits = read_csv(folder / PROFITS, profit_columns())
     return Sweep(Tables(results, profits), record)
-
-
-def _rows(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
-    with open(path, encoding="utf-8", newline="") as file:
-        reader = csv.reader(file)
-        header = next(reader, [])
-        missing = [name for name in columns if name not in header]
-        if missing or len(set(header)) < len(header):
-            raise ValueError(f"{path.name} lacks the column {missing[0] if missing else 'names'}")
-        rows = list(reader)
-    for number, row in enumerate(rows, 2):
-        if len(row) != len(header):
-            raise ValueError(f"{path.name}:{number} has {len(row)} cells, not {len(header)}")
-    return [dict(zip(header, row, strict=True)) for row in rows]
 
 
 def _digest(path: Path) -> str:

@@ -14,9 +14,9 @@ class Spread(NamedTuple):
 
     mean: float
     low: float
-    """The least of the seeds."""
+    """The least of the seeds, or the lower end of an interval: the panel's note says which."""
     high: float
-    """The largest of the seeds."""
+    """The largest of the seeds, or the upper end."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,14 @@ class Curve:
     """What is written beside points, by abscissa."""
     floor: float = 0
     """Below this nothing can be told apart; drawn as a band under the curve."""
+    style: int | None = None
+    """Number of its colour and marker; its place among the panel's curves if not given."""
+    rows: dict[float, int] = field(default_factory=dict)
+    """Number of the profit that a point shows, by abscissa, where there is one."""
+    is_before: bool = False
+    """What another curve is compared with: drawn wide and pale."""
+    marked: frozenset[float] = frozenset()
+    """Abscissas of points that are to be looked at."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +61,10 @@ class Scale:
     is_log: bool = False
     ticks: tuple[float, ...] = ()
     """Chosen by the plot if empty."""
+    names: tuple[str, ...] = ()
+    """What stands at the ticks, if not their numbers; values in between mean nothing."""
+    limits: tuple[float, float] | None = None
+    """Its ends, where panels are to be compared; chosen by the plot if not given."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +83,22 @@ class Panel:
     legend: str = ""
     """What the curves' labels are, if that needs saying."""
 
+    @property
+    def has_bands(self) -> bool:
+        """Spreads are drawn as bands: not between names, and not over what was before."""
+        return not self.x.names and not any(curve.is_before for curve in self.curves)
+
 
 def curve(
-    label: str, abscissas: Iterable[float], ratios_at: Callable[[float], Ratios], unit: float = 1
+    label: str,
+    abscissas: Iterable[float],
+    ratios_at: Callable[[float], Ratios],
+    number_at: Callable[[float], int | None] = lambda _: None,
+    unit: float = 1,
 ) -> Curve:
     """The curve of what was measured; ``unit`` scales the abscissa, 100 for per cent.
 
-    Points without a result are left out.
+    Points without a result are left out. ``number_at`` gives the number of a point, if it has one.
     """
     measured = {x: ratios_at(x) for x in abscissas}
     spreads = {
@@ -85,4 +106,5 @@ def curve(
         for x, ratios in measured.items()
         if ratios
     }
-    return Curve(label, spreads)
+    numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
+    return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from simmpp.report.claims_concurrent import (
@@ -16,7 +17,16 @@ from simmpp.report.claims_concurrent import (
     TIME_BELOW,
 )
 from simmpp.report.curves import Curve, Panel, Scale, Spread, Stated, curve
-from simmpp.report.measured import CONCURRENT, MAKESPAN, MESSAGES, RAY, REPLICATED, Measured, Ratios
+from simmpp.report.measured import (
+    CONCURRENT,
+    MAKESPAN,
+    MESSAGES,
+    RAY,
+    REPLICATED,
+    Measured,
+    Point,
+    Ratios,
+)
 
 PERCENT = 100
 NAMES = {
@@ -38,7 +48,9 @@ def figure3(measured: Measured) -> list[Panel]:
     """The reciprocal of ray dataflow's time profit on Tetrahedron5."""
     (scene,) = measured.scenes
     curves = [
-        _over_x(f"{nb} PEs", measured, partial(measured.ray_over_object, scene, nb))
+        _over_x(
+            f"{nb} PEs", measured, partial(measured.ray_over_object, scene, nb), (scene, nb, RAY)
+        )
         for nb in measured.processors
     ]
     title = f"Figure 3: ray over object dataflow, {_name(scene)}"
@@ -66,12 +78,18 @@ def figure6(measured: Measured) -> list[Panel]:
     numbers = measured.processors
     few = numbers[0]
     curves = [
-        curve(f"{x * PERCENT:.3g} %", numbers, partial(_acceleration, measured, x, few))
+        curve(
+            f"{x * PERCENT:.3g} %",
+            numbers,
+            partial(_acceleration, measured, x, few),
+            partial(_number_of_6, measured, x),
+        )
         for x in measured.fractions
         if x in FRACTIONS_OF_6
     ]
     linear = Curve("linear", {nb: Spread(*[nb / few] * 3) for nb in numbers}, is_guide=True)
-    title = f"Figure 6: {_name(MOUNTAIN5)}, concurrent dataflow"
+    continued = f" continued to {numbers[-1]} PEs" if numbers[-1] > MANY else ""
+    title = f"Figure 6{continued}: {_name(MOUNTAIN5)}, concurrent dataflow"
     said = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
     nb = Scale("processing elements (PEs)", is_log=True, ticks=tuple(numbers))
     gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True, ticks=ACCELERATIONS)
@@ -93,10 +111,11 @@ def rings7(measured: Measured) -> list[Panel]:
     (scene,), (nb,) = measured.scenes, measured.processors
     labels = {RAY: "ray dataflow", CONCURRENT: "concurrent dataflow", REPLICATED: "replicated"}
     times = [
-        _over_x(label, measured, partial(_profit, measured, MAKESPAN, scene, nb, policy))
-        for policy, label in labels.items()
+        replace(_profit_over_x(label, measured, MAKESPAN, (scene, nb, policy)), style=number)
+        for number, (policy, label) in enumerate(labels.items(), 1)
     ]
-    messages = partial(_profit, measured, MESSAGES, scene, nb, CONCURRENT)
+    messages = _profit_over_x(labels[CONCURRENT], measured, MESSAGES, (scene, nb, CONCURRENT))
+    messages = replace(messages, style=times[1].style)
     title = f"{_name(scene)}, {nb} PEs: "
     return [
         Panel(
@@ -111,7 +130,7 @@ def rings7(measured: Measured) -> list[Panel]:
             title + "message profit",
             ON_EACH_PE,
             Scale("message profit"),
-            [_over_x(labels[CONCURRENT], measured, messages)],
+            [messages],
             level=1,
             note=_note(measured),
         ),
@@ -133,7 +152,7 @@ def _profits(what: str, measured: Measured, column: str, stated: list[Stated]) -
     """Profits of concurrent dataflow, one curve a scene."""
     (nb,) = measured.processors
     curves = [
-        _over_x(_name(scene), measured, partial(_profit, measured, column, scene, nb, CONCURRENT))
+        _profit_over_x(_name(scene), measured, column, (scene, nb, CONCURRENT))
         for scene in measured.scenes
     ]
     title = f"{what} of concurrent over object dataflow, {nb} PEs"
@@ -145,12 +164,26 @@ def _note(measured: Measured) -> str:
     return f"means of {measured.seeds} seeds, and their range" if measured.seeds > 1 else "one seed"
 
 
-def _over_x(label: str, measured: Measured, ratios_at: Callable[[float], Ratios]) -> Curve:
-    return curve(label, measured.fractions, ratios_at, unit=PERCENT)
+Of = tuple[str, int, str]
+"""Scene, number of PEs and policy of a curve over x."""
 
 
-def _profit(measured: Measured, column: str, scene: str, nb: int, policy: str, x: float) -> Ratios:
-    return measured.profit(column, scene, nb, x, policy)
+def _over_x(label: str, measured: Measured, ratios_at: Callable[[float], Ratios], of: Of) -> Curve:
+    scene, nb, policy = of
+
+    def number_at(x: float) -> int | None:
+        return measured.numbers.get(Point(scene, nb, x, policy))
+
+    return curve(label, measured.fractions, ratios_at, number_at, unit=PERCENT)
+
+
+def _profit_over_x(label: str, measured: Measured, column: str, of: Of) -> Curve:
+    scene, nb, policy = of
+    return _over_x(label, measured, lambda x: measured.profit(column, scene, nb, x, policy), of)
+
+
+def _number_of_6(measured: Measured, x: float, nb: float) -> int | None:
+    return measured.numbers.get(Point(MOUNTAIN5, int(nb), x, CONCURRENT))
 
 
 def _acceleration(measured: Measured, x: float, few: int, nb: float) -> Ratios:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import NamedTuple
 
@@ -35,9 +35,13 @@ def mean(values: Sequence[float]) -> float:
 
 
 class Measured:
-    """Rows of results by point; those with an error count as missing."""
+    """Rows of results by point; those with an error count as missing.
 
-    def __init__(self, rows: Iterable[Row]) -> None:
+    ``numbers`` are what the caller knows points by; curves carry them.
+    """
+
+    def __init__(self, rows: Iterable[Row], numbers: Mapping[Point, int] | None = None) -> None:
+        self.numbers = numbers or {}
         self._runs: dict[Point, dict[int, Row]] = {}
         for row in rows:
             point = Point(row["scene"], row["processors"], row["fraction"], row["policy"])

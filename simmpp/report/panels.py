@@ -1,4 +1,4 @@
-"""Draws curves with their bands as PNG and SVG, readable in print and by the colour-blind."""
+"""Draws curves and stacked bars as PNG and SVG, readable in print and by the colour-blind."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
+from simmpp.report.bars import Bars
 from simmpp.report.curves import Curve, Panel, Scale, Stated
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -30,7 +31,16 @@ STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "///
 FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
 FADE = 1.35
 """A band below a level is drawn down to that part of it: others lie deeper."""
+PARTS: tuple[dict[str, Any], ...] = (
+    {"facecolor": "#1f5f8b"},
+    {"facecolor": "#e8963a", "hatch": "\\\\\\"},
+    {"facecolor": "#d5dbe1"},
+    {"facecolor": "#8c62b3", "hatch": "////"},
+)
+"""Of bars, bottom first: they differ in lightness too."""
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
+FEW = 4
+"""Panels up to which two are side by side; of more it is three."""
 SETTINGS: Any = {
     "svg.hashsalt": "simmpp",
     "svg.fonttype": "none",
@@ -41,13 +51,17 @@ SETTINGS: Any = {
 """Equal figures give equal bytes: ids in SVG are hashes with this salt, not random."""
 
 
-def draw(panels: Sequence[Panel], stem: Path) -> list[Path]:
+def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
     """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
+    across = min(len(panels), 2 if len(panels) <= FEW else 3)
+    down = -(-len(panels) // across)
     with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=(WIDTH_IN * len(panels), HEIGHT_IN), layout="constrained")
-        grid = figure.subplots(1, len(panels), squeeze=False)
-        for axes, panel in zip(grid[0], panels, strict=True):
-            _draw_panel(axes, panel)
+        figure = Figure(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")
+        grid = figure.subplots(down, across, squeeze=False)
+        for axes in grid.flat[len(panels) :]:
+            axes.remove()
+        for axes, panel in zip(grid.flat, panels, strict=False):
+            _draw_bars(axes, panel) if isinstance(panel, Bars) else _draw_panel(axes, panel)
         return save(figure, stem)
 
 
@@ -67,28 +81,58 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
     labels = list(dict.fromkeys(curve.label for curve in panel.curves if not curve.is_guide))
     for curve in panel.curves:
-        style = GUIDE if curve.is_guide else STYLES[labels.index(curve.label) % len(STYLES)]
-        _draw_curve(axes, curve, style)
+        style = GUIDE if curve.is_guide else STYLES[_number(curve, labels) % len(STYLES)]
+        _draw_curve(axes, curve, style, panel)
     axes.set_xscale("log" if panel.x.is_log else "linear")
     axes.set_yscale("log" if panel.y.is_log else "linear")
     _divide(axes.xaxis, panel.x)
     _divide(axes.yaxis, panel.y)
-    if not panel.y.is_log:
+    if panel.y.limits:
+        axes.set_ylim(*panel.y.limits)
+    elif not panel.y.is_log:
         axes.set_ylim(bottom=0)
     if any(curve.said for curve in panel.curves):
         axes.margins(y=0.14)  # room for what is written above the highest point
     axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
-    handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))  # a label once
+    if panel.curves:
+        _draw_legend(axes, panel.legend)
+
+
+def _number(curve: Curve, labels: list[str]) -> int:
+    """Of its style: curves of one label look alike."""
+    return labels.index(curve.label) if curve.style is None else curve.style
+
+
+def _draw_legend(axes: Axes, title: str) -> None:
+    """Each label once."""
+    handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
     axes.legend(
         handles.values(),
         handles.keys(),
-        title=panel.legend or None,
+        title=title or None,
         fontsize=8,
         title_fontsize=8,
         handlelength=3.2,
     )
+
+
+def _draw_bars(axes: Axes, bars: Bars) -> None:
+    """Parts on top of each other, one bar for each name."""
+    places = range(len(bars.x.names))
+    bottom = [0.0] * len(places)
+    for (part, heights), style in zip(bars.parts.items(), PARTS, strict=False):
+        axes.bar(places, heights, 0.85, bottom, label=part, edgecolor="white", lw=0.3, **style)
+        bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
+    axes.set_xticks(places, bars.x.names, fontsize=7)
+    axes.set_xlabel(bars.x.label)
+    axes.set_ylabel(bars.y.label)
+    if bars.y.limits:
+        axes.set_ylim(*bars.y.limits)
+    axes.set_title(bars.title, fontsize=9)
+    if bars.parts:
+        axes.legend(fontsize=8, loc="upper right", framealpha=0.9)
 
 
 def _draw_stated(axes: Axes, stated: Stated) -> None:
@@ -97,8 +141,8 @@ def _draw_stated(axes: Axes, stated: Stated) -> None:
     axes.add_patch(Rectangle(corner, width, height, label=stated.label or None, zorder=0, **STATED))
 
 
-def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any]) -> None:
-    """The mean as a line, the range of the seeds as a band."""
+def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -> None:
+    """The mean as a line, the spread of the seeds as a band; or points with bars, if so wished."""
     xs = sorted(curve.points)
     spreads = [curve.points[x] for x in xs]
     means = [spread.mean for spread in spreads]
@@ -106,7 +150,14 @@ def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any]) -> None:
         axes.plot(xs, means, label=curve.label, **style)
         return
     lows, highs = [spread.low for spread in spreads], [spread.high for spread in spreads]
-    axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
+    if curve.is_before:
+        axes.plot(xs, means, label=curve.label, linewidth=5, alpha=0.3, color=style["color"])
+        return
+    if panel.x.names:
+        axes.vlines(xs, lows, highs, color=style["color"], linewidth=1.2)
+        style = style | {"linestyle": ""}
+    if panel.has_bands:
+        axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
     axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
     if curve.floor:
         axes.fill_between(xs, curve.floor / FADE, curve.floor, color=style["color"], **FLOOR)
@@ -124,4 +175,7 @@ def _divide(axis: Axis, scale: Scale) -> None:
         axis.set_minor_formatter(NullFormatter())
     if scale.ticks:
         axis.set_major_locator(FixedLocator(list(scale.ticks)))
-    axis.set_major_formatter("{x:g}")
+    if scale.names:
+        axis.set_ticks(list(scale.ticks), list(scale.names))
+    else:
+        axis.set_major_formatter("{x:g}")

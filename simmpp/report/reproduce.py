@@ -66,7 +66,7 @@ def reproduce(
     Raises ConfigError if the folder holds results of other versions.
     """
     overrides = _overrides(seeds, resolution)
-    plans = {name: plan(_load(name, overrides)) for name in EXPERIMENTS}
+    plans = {name: plan(load_experiment(name, overrides)) for name in EXPERIMENTS}
     out.mkdir(parents=True, exist_ok=True)
     everything = _together(plans)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
@@ -74,7 +74,7 @@ def reproduce(
         with closing(crew_for(max(1, min(workers, pending)), None)) as crew:
             run_pending(Frontier(everything, journal), journal, crew, None, watcher or Watcher())
         rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
-        model = _load(MODEL, overrides)
+        model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)
     return _report(rows, verdicts, overrides, out)
 
@@ -85,7 +85,8 @@ def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
     return tuple(chosen)
 
 
-def _load(name: str, overrides: Sequence[str]) -> Config:
+def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
+    """The configuration of an experiment."""
     with as_file(_FOLDER / f"{name}.yaml") as path:
         return load_config(path, overrides)
 

@@ -43,6 +43,7 @@ class _Node(NamedTuple):
     material: Material
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what is not finite is refused here, in words
 def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> Scene:
     """The scene of a mesh file, cut into objects.
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
@@ -13,7 +14,10 @@ from simmpp.sweeps.axes import axes_of
 from simmpp.sweeps.config import Config, described, point_at
 from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.seeding import first_seeds
+from simmpp.units import counted
 
+MOST_POINTS = 1_000_000
+"""Combinations of values and seeds of one sweep: a day's work at ten a second."""
 OWN_COLUMNS = ("scene", "processors", "memory.fraction", "policy", "method")
 """Keys that have a column in every table of rows, swept or not."""
 
@@ -73,10 +77,21 @@ def grid(config: Config) -> list[GridPoint]:
 
     With a tolerance these are the points that a sweep begins with.
     Raises ConfigError for values that do not go together, and for policies that are not equal but
-    would have equal rows.
+    would have equal rows, or for more than MOST_POINTS.
     """
     seeds = first_seeds(config.settings)
+    _require_feasible(config, len(seeds))
     return [point for each in comparisons(config) for point in each.points(seeds)]
+
+
+def _require_feasible(config: Config, n_seeds: int) -> None:
+    """Count before anything is made of it: four axes of a thousand values are easily written."""
+    n_combinations = prod(map(len, axes_of(config.settings.sweep).values()))
+    if n_combinations * n_seeds > MOST_POINTS:
+        raise ConfigError(
+            f"sweep: {n_combinations} combinations with {counted(n_seeds, 'seed')} each: "
+            f"expected at most {MOST_POINTS} points"
+        )
 
 
 def comparisons(config: Config) -> list[Comparison]:

@@ -21,6 +21,20 @@ FILE = "points.jsonl"
 FORMAT = 1
 
 
+def is_at_work(folder: Path) -> bool:
+    """Whether a sweep works in a folder now; never where files can't be locked, as on Windows."""
+    try:
+        import fcntl
+
+        with open(folder / FILE, "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except (ImportError, OSError):
+        return False
+    return False
+
+
 class Results:
     """Finished simulations in memory."""
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypedDict
 
+from simmpp.engine.log import Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.machine.machine import Machine
@@ -87,25 +89,41 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
 
 
+class Records(TypedDict):
+    """What a run notes besides its counters."""
+
+    log: bool | Sink
+    record_tests: bool
+    record_hops: bool
+
+
 def run_point(
     point: Point,
     *,
     record_tests: bool = False,
+    record_hops: bool = False,
+    log_of: Callable[[PolicyParameters], Sink] | None = None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
     """Simulate the policies one after the other, yielding each as it is finished.
 
-    ``progress(title, rays left)`` is called now and then.
+    ``log_of`` gives what gets the event log of a policy's run. ``progress(title, rays left)`` is
+    called now and then.
     """
     for parameters, named in policies_of(point.config):
-        yield _run(point, parameters, named, record_tests, progress)
+        records: Records = {
+            "log": False if log_of is None else log_of(parameters),
+            "record_tests": record_tests,
+            "record_hops": record_hops,
+        }
+        yield _run(point, parameters, named, records, progress)
 
 
 def _run(
     point: Point,
     parameters: PolicyParameters,
     named: bool,
-    record_tests: bool,
+    records: Records,
     progress: Callable[[str, int], None] | None,
 ) -> PolicyRun:
     def report(rays_left: int) -> None:
@@ -121,8 +139,8 @@ def _run(
         parameters,
         engine=settings.engine,
         ready_order=settings.ready_order,
-        record_tests=record_tests,
         progress=report,
+        **records,
     )
     return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict
 from functools import partial
@@ -23,6 +23,7 @@ from simmpp.sweeps.outcome import Outcome
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.profits import profit_columns, profit_rows
 from simmpp.sweeps.provenance import all_versions
+from simmpp.sweeps.showing import Showing
 from simmpp.sweeps.tables import Row, as_arrow, write_csv, write_parquet, write_text
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import keep_workload
@@ -123,16 +124,28 @@ def _simulate(
     Returns the plan with all that turned out to be needed.
     """
     frontier = Frontier(plan, results)
-    try:
+    if folder is None:
         run_pending(frontier, results, crew, timeout_s, watcher)
+        return frontier.plan
+
+    def write() -> None:
+        write_tables(frontier.plan, results, folder)
+
+    showing = Showing(write)
+    try:
+        run_pending(frontier, results, crew, timeout_s, watcher, showing)
     finally:
-        if folder is not None:
-            write_tables(frontier.plan, results, folder)
+        write()
     return frontier.plan
 
 
 def run_pending(
-    frontier: Frontier, results: Results, crew: Crew, timeout_s: float | None, watcher: Watcher
+    frontier: Frontier,
+    results: Results,
+    crew: Crew,
+    timeout_s: float | None,
+    watcher: Watcher,
+    after_each: Callable[[], None] = lambda: None,
 ) -> None:
     """Run what isn't finished, and what that shows to be needed; ``results`` grow one by one."""
     for text in results.notices:
@@ -146,6 +159,7 @@ def run_pending(
             pending.extend(more)  # while these wait, others run
             watcher.asked(len(more))
         watcher.simulated(outcome)
+        after_each()
 
 
 def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher) -> None:

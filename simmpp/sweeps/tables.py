@@ -42,6 +42,24 @@ def write_csv(rows: Iterable[Row], columns: Sequence[str], path: Path) -> None:
         writer.writerows([row[name] for name in columns] for row in rows)
 
 
+def read_csv(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
+    """The rows of a CSV file, cells as they are written.
+
+    Raises OSError, or ValueError if it lacks one of ``columns`` or a row has not all cells.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        reader = csv.reader(file, strict=True)
+        header = next(reader, [])
+        missing = [name for name in columns if name not in header]
+        if missing or len(set(header)) < len(header):
+            raise ValueError(f"{path.name} lacks the column {missing[0] if missing else 'names'}")
+        rows = list(reader)
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(header):
+            raise ValueError(f"{path.name}:{number} has {len(row)} cells, not {len(header)}")
+    return [dict(zip(header, row, strict=True)) for row in rows]
+
+
 def write_parquet(rows: Sequence[Row], columns: Sequence[str], path: Path) -> None:
     """Write the same as Parquet: int64, float64 or text; what isn't there is null."""
     from pyarrow import parquet

@@ -79,7 +79,7 @@ def _input_coordinates(thing: SceneObject) -> tuple[Floats, float]:
     if isinstance(thing, Sphere):
         return np.array([thing.centre], dtype=np.float64), thing.radius
     if isinstance(thing, Cone):
-        radius = max(abs(thing.base_radius), abs(thing.apex_radius))
+        radius = float(np.abs([thing.base_radius, thing.apex_radius]).max())  # NaN if one is
         return np.array([thing.base, thing.apex], dtype=np.float64), radius
     return np.asarray(thing.vertices, dtype=np.float64), 0.0
 

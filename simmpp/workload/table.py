@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.errors import WorkloadError
+from simmpp.scene.nff_words import LARGEST
 
 Column = NDArray[Any]
 MOST_ROWS = 2**31 - 2
@@ -69,7 +70,8 @@ class Table:
         return column.astype(np.int64)
 
     def numbers(self, name: str, where: NDArray[np.bool_] | bool = True) -> NDArray[np.float64]:
-        """(rows,) float64, finite ``where`` that is asked; 0 where there is no column."""
+        """(rows,) float64, of a size that can be reckoned with ``where`` that is asked; 0 where
+        there is no column."""
         if name not in self.columns:
             return np.zeros(self.rows)
         column = self.columns[name]
@@ -77,7 +79,9 @@ class Table:
             self.fail(name, f"it holds {_what(column)}, expected numbers")
         with np.errstate(over="ignore"):
             column = column.astype(np.float64)
-        self.require(np.isfinite(column) | ~np.asarray(where), name, "a finite number")
+        bounded = np.abs(column) <= LARGEST  # NaN is not
+        expected = f"a finite number of at most {LARGEST:g}"
+        self.require(bounded | ~np.asarray(where), name, expected)
         return column
 
     def choices(self, name: str, words: Sequence[str], default: Column) -> NDArray[np.uint8]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
@@ -14,6 +15,7 @@ from simmpp.scene.boxes import boxes
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.units import format_bytes
 from simmpp.workload.candidates import find_itineraries
 from simmpp.workload.digest import digest_of
 from simmpp.workload.geometry import Geometry, flatten
@@ -25,6 +27,8 @@ from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
 """Rays of one batch: bounds the memory of what is only passing through."""
+BYTES_PER_RAY = 100
+"""Memory that every primary ray takes at least: two vectors with their temporaries, numbers."""
 MOST_RAYS = 2**31 - 1
 """Ray numbers are int32."""
 Number = TypeVar("Number", bound=np.generic)
@@ -67,11 +71,12 @@ def trace(
     SceneError
         The scene's geometry or camera can't be traced.
     ConfigError
-        The picture has more than MOST_RAYS rays.
+        The picture has more than MOST_RAYS rays, or more than the machine's memory holds.
     """
     check_scene(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)
+    _require_memory(rows * columns, scene.name)
     frame = frame_of(scene)
     geometry = flatten(scene, frame)
     rules = spawning(scene, picture, frame, geometry)
@@ -102,6 +107,17 @@ def trace(
 def _require_numbers(n_rays: int, name: str) -> None:
     if n_rays > MOST_RAYS:
         problem = f"the picture has more than {MOST_RAYS} rays: lower its resolution or max_depth"
+        raise ConfigError(problem, where=name)
+
+
+def _require_memory(n_primaries: int, name: str) -> None:
+    """Refuse at once what would end in the system's killing the process, minutes later."""
+    if not hasattr(os, "sysconf"):  # Windows
+        return
+    memory_bytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if n_primaries * BYTES_PER_RAY > memory_bytes:
+        takes = f"{n_primaries} primary rays take {format_bytes(n_primaries * BYTES_PER_RAY)}"
+        problem = f"{takes}, there are {format_bytes(memory_bytes)}: expected a lower resolution"
         raise ConfigError(problem, where=name)
 
 

@@ -119,7 +119,7 @@ def growth() -> None:
 
 
 def contention() -> None:
-    """What links and ports cost: times of runs one after the other, without and with them."""
+    """What links and ports cost: the shortest of runs without and with them, in turns."""
     print(
         "\nlinks, ports, compiled\nload      policy        PEs   messages     none    links  ratio"
     )

@@ -125,7 +125,7 @@ def test_the_most_rays_may_be_held_after_the_start(attempts: list[bool]) -> None
         case = replace(case, workload=workload, placement=placed, ready_order="depth-first")
         got = run(case)
         assert got == by_events(case)
-        later += got["peak_rays"] > np.bincount(placed.pixel_pes, minlength=1).max()  # type: ignore[operator]
+        later += max(got["pe_peak_rays"]) > np.bincount(placed.pixel_pes, minlength=1).max()  # type: ignore[operator]
     assert later > 5
 
 
@@ -208,3 +208,11 @@ def state_of(case: Case) -> State:
     )
     compiled_engine.CompiledRun(state).run()
     return state
+
+
+def test_progress_is_told_without_events_too() -> None:
+    told: list[int] = []
+    case = nothing_remote(1)
+    parts = case.workload, case.machine, case.placement, case.policy
+    simmpp.simulate(*parts, progress=told.append)
+    assert told == [0]

@@ -3,9 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from oracles.state import Message
+from oracles.state import PE, Message
 from simmpp.machine.messages import MESSAGE_KINDS
+
+
+class Slice(NamedTuple):
+    """One thing that a PE did."""
+
+    pe: int
+    begin: int
+    what: str
+    """"compute", "receive" or "send"."""
+    end: int
+    tests: int = 0
+    rays: int = 0
+    """In the message, or finished by the computation."""
+    load: int = 0
+    """Of the PE at the end."""
+    ready: int = 0
+    other: int = -1
+    """The PE at the other end of the message."""
+    kind: int = -1
+    number: int = -1
+    """The sender's send number; -1 if the message never departed."""
+    payload_bytes: int = 0
 
 
 @dataclass
@@ -30,6 +53,8 @@ class Outcome:
     """(time, destination, source, send number, message kind, payload bytes)."""
     activities: list[tuple[int, int, str, int, int]]
     """(begin, PE, "receive <kind>" or "compute", end, tests)."""
+    slices: list[Slice]
+    """Every message unpacked or packed and every computation, those of a PE one after another."""
     tested: list[tuple[int, int]]
     """(ray, object) in the order performed: by the beginnings of the computes."""
 
@@ -46,6 +71,7 @@ class Ledger:
     open: dict[int, tuple[int, str, int]] = field(default_factory=dict)
     """PE: (begin, kind, tests) of the activity that has not ended."""
     activities: list[tuple[int, int, str, int, int]] = field(default_factory=list)
+    slices: list[Slice] = field(default_factory=list)
     tested: list[tuple[int, int]] = field(default_factory=list)
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
@@ -71,6 +97,23 @@ class Ledger:
         """Write down an activity that is over."""
         begin, kind, n_tests = self.open.pop(pe)
         self.activities.append((begin, pe, kind, end, n_tests))
+
+    def did(self, pe: PE, begin: int, what: str, end: int, m: Message | None, **more: int) -> None:
+        """Write down what a PE did."""
+        state = {"load": pe.load, "ready": len(pe.ready)}
+        if m is not None:
+            state |= {"kind": m.kind, "number": m.send_number, "payload_bytes": m.payload_bytes}
+            state |= {"other": m.source if what == "receive" else m.destination}
+            state |= {"rays": len(m.rays)}
+        self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
+
+    def clipped(self, end: int) -> list[Slice]:
+        """What was done until the end of the run, by PE and time."""
+        kept = [s for s in self.slices if s.end <= end or s.begin < end]
+        late = [s._replace(end=end) for s in kept]
+        late = [s._replace(number=-1) if s.what == "send" else s for s in late]
+        found = [s if s.end <= end else short for s, short in zip(kept, late, strict=True)]
+        return sorted(found, key=lambda s: s.pe)
 
     def account(self, name: str, pe: int) -> int:
         """Time of a PE in an account, clipped at the makespan."""
@@ -110,5 +153,6 @@ class Ledger:
             rules_never_fired=tuple(rule for rule in rules if not fired[rule]),
             arrivals=sorted(self.arrivals),
             activities=sorted(activities, key=lambda row: row[:2]),
+            slices=self.clipped(end),
             tested=self.tested,
         )

@@ -17,7 +17,7 @@ from oracles.ledger import Outcome
 from oracles.rules import RULES, Rules
 from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import Workload
@@ -34,7 +34,7 @@ class Simulation(Dispatch):
             "arrive": self.arrive,
             "begin": self.begin,
             "dispatch": self.dispatch,
-            "depart": self.depart,
+            "take": self.take,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -82,15 +82,16 @@ class Simulation(Dispatch):
         pe.heard[message.source] = clock
         if message.kind in (OBJECT, RAYS):
             pe.partners.add(message.source)
-        if message.kind == REQUEST:
-            size = self.object_bytes[message.obj]
-            clock = self.send(clock, pe, OBJECT, message.source, size, obj=message.obj)
-        elif message.kind == OBJECT:
+        if message.kind == OBJECT:
             self.release(pe, message.obj)
         elif message.kind == RAYS:
             pe.make_ready(list(message.rays), self.ready_order)
-        else:
+        elif message.kind == LOAD:
             pe.refresh_allowed = False
+        self.ledger.did(pe, time, "receive", clock, message)
+        if message.kind == REQUEST:
+            size = self.object_bytes[message.obj]
+            clock = self.send(clock, pe, OBJECT, message.source, size, obj=message.obj)
         self.sample_rays(pe)
         return clock
 
@@ -110,6 +111,7 @@ class Simulation(Dispatch):
     def compute(self, time: int, pe: PE) -> int:
         """Up to a quantum of tests; returns the end of that."""
         clock = self.pay("communication", pe, time, self.machine.probe_ps)
+        done_before = len(self.ledger.finished_ps)
         tests_left = self.machine.quantum
         while tests_left > 0 and pe.ready:
             ray = pe.ready[0]
@@ -127,6 +129,9 @@ class Simulation(Dispatch):
                     break
                 clock = self.test(clock, pe, ray, obj)
                 tests_left -= 1
+        done = len(self.ledger.finished_ps) - done_before
+        tests = self.machine.quantum - tests_left
+        self.ledger.did(pe, time, "compute", clock, None, tests=tests, rays=done)
         return clock
 
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:

@@ -47,14 +47,13 @@ class Network:
         slowest = min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
         return transfer_ps(message.payload_bytes + self.machine.header_bytes, slowest)
 
-    def arrival(self, message: Message) -> int:
-        """When a message that departs now, after all others so far, has arrived."""
-        busy = self.transfer_ps(message)
-        head = self.take(("injection", str(message.source)), message.departure, busy)
-        for link in links(self.machine.shape, message.source, message.destination):
-            head = self.take(link, head, busy) + self.machine.hop_latency_ps
-        head += self.machine.latency_ps
-        return self.take(("ejection", str(message.destination)), head, busy) + busy
+    def way(self, message: Message) -> list[tuple[tuple[str, ...], int]]:
+        """Ports and links of a message, and how long its head takes from each to the next."""
+        between = links(self.machine.shape, message.source, message.destination)
+        stages = [(link, self.machine.hop_latency_ps) for link in between]
+        stages[-1] = (stages[-1][0], stages[-1][1] + self.machine.latency_ps)
+        ejection = (("ejection", str(message.destination)), self.transfer_ps(message))
+        return [(("injection", str(message.source)), 0), *stages, ejection]
 
     def take(self, what: tuple[str, ...], head: int, busy: int) -> int:
         """Wait for a link or port, and keep it busy; returns when it was free."""

@@ -33,7 +33,7 @@ class World:
     queue: list[tuple[Any, ...]] = field(default_factory=list)
     """A heap of (key, what happens, to whom); keys are the order of ties and never equal:
     arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
-    departures, with contention, (time, 2, source, send number, 0)."""
+    heads of messages at links and ports (time, 2, source, send number, 0)."""
     ledger: Ledger = field(default_factory=Ledger)
 
     def __post_init__(self) -> None:
@@ -82,6 +82,7 @@ class World:
         rays: tuple[int, ...] = (),
     ) -> int:
         """Pack a message and let it depart; returns the time of that."""
+        begin = clock
         cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
         clock = self.pay("communication", pe, clock, cost)
         message = Message(
@@ -100,17 +101,27 @@ class World:
         if kind in (OBJECT, RAYS):
             pe.partners.add(destination)
         self.ledger.sent.append(message)
+        self.ledger.did(pe, begin, "send", clock, message)
         if self.machine.contention == "links":
-            key = (clock, 2, pe.number, message.send_number, 0)
-            heapq.heappush(self.queue, (key, "depart", message))
+            self.come_to(clock, message, self.network.way(message))
         else:
             flight = network_ps(self.machine, pe.number, destination, payload_bytes)
             self.let_arrive(clock + flight, message)
         return clock
 
-    def depart(self, time: int, message: Message) -> None:
-        """A message enters a network with contention."""
-        self.let_arrive(self.network.arrival(message), message)
+    def come_to(self, time: int, message: Message, way: list[Any]) -> None:
+        """The head of a message will be at the first of these ports and links."""
+        key = (time, 2, message.source, message.send_number, 0)
+        heapq.heappush(self.queue, (key, "take", (message, way)))
+
+    def take(self, time: int, head: tuple[Message, list[Any]]) -> None:
+        """The head of a message is at a port or link, and goes on when that is free."""
+        message, ((what, then), *rest) = head
+        time = self.network.take(what, time, self.network.transfer_ps(message)) + then
+        if rest:
+            self.come_to(time, message, rest)
+        else:
+            self.let_arrive(time, message)
 
     def let_arrive(self, time: int, message: Message) -> None:
         """A message travels, and will be there at a time."""

@@ -23,6 +23,7 @@ from simmpp.scene.load import load_scene
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Camera, Cone, Light, Material, MeshPart, Polygon, Scene, Sphere
+from simmpp.workload.intersect import Intersector
 from simmpp.workload.normalise import frame_of
 from simmpp.workload.shading import render
 from simmpp.workload.tracer import trace
@@ -36,6 +37,13 @@ GRID = 2.0**-10
 FARTHEST = 2**51
 """... and the largest offset is this many: sums fill 53 bits."""
 MATERIALS = (Material(), Material(ks=0.5), Material(ks=0.1, transmittance=0.9, ior=1.5))
+
+
+class NoProposals(Intersector):
+    """Embree says nothing: float64 searches without a bound."""
+
+    def claims(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        return np.full((len(origins), 2), -1, dtype=np.int32)
 
 
 def compare(here: Workload, there: Workload, size: float = 1.0) -> None:
@@ -126,6 +134,7 @@ def test_any_scene_elsewhere_and_in_other_units(
     scene: Scene, offset: tuple[int, int, int], power: int
 ) -> None:
     here = trace(scene, PICTURE)
+    compare(here, trace(scene, PICTURE, intersector=NoProposals))
     there = moved(scene, tuple(step * GRID for step in offset))
     assert moved(there, tuple(-step * GRID for step in offset)).camera == scene.camera  # exact
     compare(here, trace(there, PICTURE))

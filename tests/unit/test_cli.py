@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import gzip
 import json
 import os
 import subprocess
@@ -298,3 +299,42 @@ def test_help_imports_nothing_heavy() -> None:
 
 def test_version() -> None:
     assert simmpp("--version").stdout.startswith("simmpp, version ")
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--timeline", "t.txt"], "--timeline: value 't.txt': expected a file .json, .json.gz or"),
+        (["--timeline-window", "0 ms:5 ms"], "--timeline-window: expected --timeline FILE beside"),
+        (["--timeline", "t.json", "--timeline-window", "5 ms"], "value '5 ms': expected START:END"),
+        (["--timeline", "t.json", "--timeline-window", "2 ms:1 ms"], "START before END"),
+        (["--timeline", "t.json", "--timeline-window", "2:3"], "--timeline-window: value '2': exp"),
+        (["--timeline", "no/t.json"], "expected a file in an existing folder"),
+    ],
+)
+def test_a_timeline_that_cannot_be(options: list[str], problem: str) -> None:
+    assert problem in refused("run", "c.yaml", *options)
+
+
+def test_run_writes_a_timeline_of_every_policy() -> None:
+    assert simmpp("run", "c.yaml", "--timeline", "t.json").exit_code == 0
+    events = json.loads(Path("t.json").read_text())["traceEvents"]
+    processes = [e["args"]["name"] for e in events if e.get("name") == "process_name"]
+    assert processes == ["object", "ray", "concurrent", "replicated"]
+    window = ("--timeline", "w.json.gz", "--timeline-window", "0 ms:10 us")
+    assert simmpp("run", "c.yaml", *window).exit_code == 0
+    cut = json.loads(gzip.decompress(Path("w.json.gz").read_bytes()))["traceEvents"]
+    assert max(event.get("ts", 0) for event in cut) <= 10
+    assert max(event.get("ts", 0) for event in events) > 10
+
+
+def test_run_draws_figures_of_every_policy() -> None:
+    command = ("run", "c.yaml", "--set", "policy={name: object, label: 'by o/t'}", "--figures", "f")
+    assert simmpp(*command, "--timeline", "t.parquet").exit_code == 0
+    names = ("activity", "memory", "pixels", "progress", "torus", "traffic")
+    for policy in ("by-o-t", "replicated"):
+        for name in names:
+            assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
+            assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
+    assert len(list(Path("f").iterdir())) == 2 * 2 * len(names)
+    assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")

@@ -47,12 +47,13 @@ def test_messages_of_a_pair_follow_one_another(implementation: str) -> None:
 
 
 def test_two_messages_share_a_link(implementation: str) -> None:
-    # Ring of 4; ways of two links go towards +. Both requests depart at 13.
-    # 0 to 2  injection 13, link 0 from 113, link 1 from 143 to 155, ejection 173: arrives at 185
-    # 1 to 3  injection 13, link 1: its head is there at 113, but PE 0's message has booked it till
-    #         155; link 2 from 185, ejection from 215: arrives at 227
-    # 2 to 0  departs 185 + 26 + 63 = 274; link 2 from 374, link 3 from 404 to 458: arrives at 488
-    # 3 to 1  departs 227 + 89 = 316; link 3: 416, but busy till 458; link 0 from 488, ejection 518
+    # Ring of 4; ways of two links go towards +. Half a byte per ps: requests take 24, objects 108.
+    # Both requests depart at 13.
+    # 1 to 3  injection 13, link 1 from 113 to 137, link 2 from 143, ejection 173: arrives at 197
+    # 0 to 2  injection 13, link 0 from 113, link 1 from 143, when it is free again; ejection 173
+    # 2 to 0  departs 197 + 26 + 63 = 286; link 2 from 386, link 3 416: see below
+    # 3 to 1  departs at 286 too; link 3 from 386 to 494, link 0 416, ejection 446: arrives at 554
+    # 2 to 0  so it gets link 3 at 494, ejection 524: arrives at 632
     case = case_of(
         OBJECT,
         [(0, [1]), (1, [2])],
@@ -60,12 +61,13 @@ def test_two_messages_share_a_link(implementation: str) -> None:
         object_bytes=(40, 50, 50),
         shape=(4, 1, 1),
         contention=LINKS,
+        link_bytes_per_s=BYTE_PER_PS // 2,
     )
     assert run(implementation, case).arrivals == [
-        (185, 2, 0, 0, "request", 8),
-        (227, 3, 1, 0, "request", 8),
-        (488, 0, 2, 0, "object", 50),
-        (572, 1, 3, 0, "object", 50),
+        (197, 2, 0, 0, "request", 8),
+        (197, 3, 1, 0, "request", 8),
+        (554, 1, 3, 0, "object", 50),
+        (632, 0, 2, 0, "object", 50),
     ]
 
 
@@ -94,11 +96,11 @@ def test_the_two_links_of_a_ring_of_two(implementation: str) -> None:
     assert outcome.arrivals[:2] == [(155, 0, 1, 0, "request", 8), (155, 1, 0, 0, "request", 8)]
 
 
-def test_messages_of_one_instant_are_booked_by_source_and_number(implementation: str) -> None:
+def test_messages_of_one_instant_are_served_by_source_and_number(implementation: str) -> None:
     # Sending is free: all three requests depart at 1 (probe) and meet at PE 1's ejection port
     # 0 to 1  injection 1 to 13, link from 101 to 113, ejection 131: arrives at 143
-    #         injection 13, link 113, ejection 143: 155
-    # 2 to 1  injection 1, link 101, ejection: its head is there at 131, but it comes last: 167
+    # 2 to 1  injection 1, link 101, ejection: its head is there at 131 as well: 155
+    # 0 to 1  injection 13, link 113, ejection: its head is there at 143, but waits till 155: 167
     free = CopyCost(0)
     case = case_of(
         OBJECT,
@@ -112,12 +114,12 @@ def test_messages_of_one_instant_are_booked_by_source_and_number(implementation:
     )
     assert run(implementation, case).arrivals[:3] == [
         (143, 1, 0, 0, "request", 8),
-        (155, 1, 0, 1, "request", 8),
-        (167, 1, 2, 0, "request", 8),
+        (155, 1, 2, 0, "request", 8),
+        (167, 1, 0, 1, "request", 8),
     ]
 
 
-def test_who_departs_earlier_books_first_whenever_it_was_sent(implementation: str) -> None:
+def test_who_comes_first_is_served_first_whoever_was_sent_first(implementation: str) -> None:
     # PE 0 asks at 1 for two objects: departures at 13 and, still to come, at 25. PE 2 tests object
     # 0 (a mesh: 7) and asks at 8: departure at 20. At PE 1's ejection port
     # 0 to 1  143, arrives at 155

@@ -8,13 +8,15 @@ Poisson departures of equal messages to one port are an M/D/1 queue (a mean wait
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from by_hand import MACHINE
 from numpy.typing import NDArray
+from oracles.hop_by_hop import Sent
 from scipy import stats
-
-from simmpp.machine.links import ROWS_PER_PE, book
+from traffic import arrivals_ps
 
 SHAPE = (3, 3, 3)
 NEIGHBOURS = (1, 2, 3, 6, 9, 18)
@@ -41,12 +43,10 @@ def waits_ps(rho: float, sources: tuple[int, ...], sizes: Draw, destination: int
     departs_ps = np.rint(np.cumsum(rng.exponential(T_PS / rho, MESSAGES))).astype(np.int64)
     senders = rng.choice(sources, MESSAGES)
     busy_ps = sizes(rng, MESSAGES)
-    free_ps = np.zeros(ROWS_PER_PE * 27, np.int64)
-    arrivals_ps = [
-        book(free_ps, SHAPE, source, destination, depart_ps, LATENCY_PS, HOP_PS, busy)
-        for source, depart_ps, busy in zip(senders, departs_ps, busy_ps, strict=True)
-    ]
-    return np.array(arrivals_ps) - departs_ps - LATENCY_PS - HOP_PS - busy_ps
+    machine = replace(MACHINE, shape=SHAPE, latency_ps=LATENCY_PS, hop_latency_ps=HOP_PS)
+    columns = zip(departs_ps, senders, range(MESSAGES), busy_ps, strict=True)
+    traffic = [Sent(at, pe, n, destination, busy) for at, pe, n, busy in columns]
+    return arrivals_ps(machine, traffic) - departs_ps - LATENCY_PS - HOP_PS - busy_ps
 
 
 def mean_within(waits: Times) -> tuple[float, float]:

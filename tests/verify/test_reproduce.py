@@ -70,12 +70,15 @@ def test_equal_points_of_all_figures_are_simulated_once(done: Reproduction, out:
         tuple(row[name] for name in ("scene", "processors", "fraction", "policy", "seed"))
         for name in EXPERIMENTS
         for row in rows_of(out / f"{name}.csv")
-        if row["policy"] != "replicated"
+        if row["policy"] != "replicated" and row["fraction"] < 1
     }
     simulated = [
         line for line in (out / "points.jsonl").read_text().splitlines() if '"numbers"' in line
     ]
-    assert len(simulated) == len(rows) + 5  # the replicated scenes, whatever the fraction
+    everything = {("mountain:5", nb) for nb in (32, 64, 128, 256, 512, 1024)}
+    everything |= {("tetra:5", nb) for nb in (8, 16, 32, 64, 128)}
+    everything |= {(scene, 64) for scene in ("rings:1", "rings:7", "tetra:6")}
+    assert len(simulated) == len(rows) + len(everything)  # whatever the policy
 
 
 def test_figures_show_the_rows(done: Reproduction, out: Path) -> None:

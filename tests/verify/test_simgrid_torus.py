@@ -8,16 +8,17 @@ or take the latency of the hops that one way has more than the other.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
-from by_hand import OBJECT, case_of
+from by_hand import MACHINE, OBJECT, case_of
 from implementations import IMPLEMENTATIONS, run
+from oracles.hop_by_hop import Sent
 from oracles.network import links
+from traffic import arrivals_ps
 
-from simmpp.machine.links import CONTENTIONS, ROWS_PER_PE, book
+from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import CopyCost
 from simmpp.machine.network import PS_PER_S, transfer_ps
 from simmpp.machine.torus import hops
@@ -87,8 +88,7 @@ def test_halfway_round_a_ring_the_direction_is_ours() -> None:
 def test_the_last_of_several_ends_when_simgrids_does(name: str) -> None:
     messages = SIMGRID["together"][name]["source_destination_bytes_start_s"]
     elapsed_s = SIMGRID["together"][name]["elapsed_s"]
-    free_ps = np.zeros(ROWS_PER_PE * 64, np.int64)
-    ours = [_arrival_ps(free_ps, *message) for message in messages]
+    ours = arrivals_of(messages)
     theirs = [
         picoseconds(message[3]) + picoseconds(elapsed)
         for message, elapsed in zip(messages, elapsed_s, strict=True)
@@ -106,13 +106,16 @@ def test_links_carry_simgrids_bytes() -> None:
     # Two messages on one link: as many bytes by the end of the last one, at the full bandwidth
     for name in ("c2_same_pair", "c2_staggered_1ms"):
         messages = SIMGRID["together"][name]["source_destination_bytes_start_s"]
-        free_ps = np.zeros(ROWS_PER_PE * 64, np.int64)
-        last_ps = max(_arrival_ps(free_ps, *message) for message in messages)
+        last_ps = max(arrivals_of(messages))
         n_bytes = sum(message[2] for message in messages)
         assert last_ps - HOP_PS == n_bytes * PS_PER_S // BYTES_PER_S
 
 
-def _arrival_ps(free_ps: Any, source: int, destination: int, n_bytes: int, start_s: float) -> int:
-    busy_ps = transfer_ps(n_bytes, BYTES_PER_S)
-    start_ps = picoseconds(start_s)
-    return int(book(free_ps, SHAPE, source, destination, start_ps, 0, HOP_PS, busy_ps))
+def arrivals_of(messages: list[tuple[int, int, int, float]]) -> list[int]:
+    """When ours arrive: of (source, destination, bytes, start in s), in the order of departures."""
+    machine = replace(MACHINE, shape=SHAPE, latency_ps=0, hop_latency_ps=HOP_PS)
+    traffic = [
+        Sent(picoseconds(start_s), source, n, destination, transfer_ps(n_bytes, BYTES_PER_S))
+        for n, (source, destination, n_bytes, start_s) in enumerate(messages)
+    ]
+    return arrivals_ps(machine, traffic).tolist()

@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -154,6 +155,12 @@ BROKEN = {
     "text.stl": (b"hello there", "no"),
     "short.ply": (b"ply\nformat ascii 1.0\nelement vertex 3\n", "not a readable ply mesh"),
     "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is not a finite number"),
+    "inf.ply": (
+        b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        b"property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        b"inf 0 0\n1 nan 0\n0 1e39 0\n3 0 1 2\n",
+        "is not a finite number",
+    ),
     "huge.obj": (b"v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is not a finite number"),
     "index.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "not a readable obj mesh"),
     "point.obj": (b"v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "all vertices are the same point"),
@@ -170,7 +177,8 @@ BROKEN = {
 def test_broken_files(tmp_path: Path, name: str) -> None:
     data, problem = BROKEN[name]
     (tmp_path / name).write_bytes(data)
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError) as caught, warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)  # users would see them beside the one line
         load_mesh(tmp_path / name)
     message = str(caught.value)
     assert message.startswith(f"{tmp_path / name}: ") and problem in message

@@ -233,6 +233,7 @@ MISTAKES: list[tuple[Change, str]] = [
     (objects(triangles=[0, 2, -1]), "column triangles, row 2: value -1: expected an integer"),
     (objects(test_ps=[0, 10**14, 0]), "column test_ps, row 1: value 100000000000000: expected"),
     (objects(x=[0.0, np.inf, 0]), "column x, row 1: value inf: expected a finite number"),
+    (objects(y=[0.0, -1e31, 0]), "column y, row 1: value -1e+31: expected a finite number of"),
     (objects(x=["a", "b", "c"]), "column x: it holds text, expected numbers"),
     (objects(kind=["sphere", "cube", "mesh"]), "column kind, row 1: value 'cube': expected one of"),
 ]  # fmt: skip

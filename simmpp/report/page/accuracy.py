@@ -1,0 +1,24 @@
+"""Run time against error, from the rows of a bench."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from simmpp.report.bench_figure import bench_panels
+from simmpp.report.figures import NAMES
+from simmpp.report.page.figure import Figure
+from simmpp.report.rungs import rungs
+from simmpp.sweeps.tables import Row
+
+
+def accuracy_figures(bench: Sequence[Row]) -> list[Figure]:
+    """One figure, or none without rows."""
+    if not bench:
+        return []
+    columns = list(bench[0])
+    keys = columns[: columns.index("policy")]
+    reference = max(row["reference_seeds"] + row["seeds"] for row in bench)
+    panels = bench_panels(rungs(bench, keys), NAMES, reference)
+    return [
+        Figure("run-time-against-error", "Run time against error", panels[0].note, {"": panels})
+    ]

@@ -1,0 +1,107 @@
+"""How the points of any sweep become figures: what runs along, what stands side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from simmpp.report.page import words
+from simmpp.sweeps.columns import KEYS
+from simmpp.sweeps.tables import Row, sort_key
+
+AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
+PREFERRED = ("fraction", "processors")
+"""Abscissas, of those with equally many values."""
+MOST_PANELS = 12
+"""Panels side by side; an axis with more values is chosen from."""
+Axes = Mapping[str, Sequence[Any]]
+"""Values of each axis that has several, sorted."""
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """What becomes of each axis."""
+
+    abscissa: str
+    values: tuple[Any, ...]
+    """Of the abscissa."""
+    facet: str | None
+    """One panel for each of its values; one panel in all where there is no such axis."""
+    chosen: tuple[str, ...]
+    """The others: one plate of panels for each combination of them that there is."""
+
+
+def axes_of(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[Any]]:
+    """The axes along which rows differ, but for policy and seed."""
+    found: dict[str, list[Any]] = {}
+    for name in (*AXES, *further):
+        values = {row[name] for row in rows}
+        if len(values) > 1:
+            found[name] = sorted(values, key=lambda each: sort_key({"": each}, ("",)))
+    return found
+
+
+def abscissas(axes: Axes) -> list[str]:
+    """Axes worth running along, the best first: numbers before texts, then those with most values.
+
+    Of texts only the best, as nothing lies between them; none at all: the policies themselves.
+    """
+    ranked = sorted(
+        axes, key=lambda name: (-len(axes[name]), PREFERRED.index(name) if name in PREFERRED else 9)
+    )
+    numeric = [name for name in ranked if all(map(words.is_number, axes[name]))]
+    return numeric or ranked[:1] or ["policy"]
+
+
+def arrange(
+    rows: Sequence[Row], axes: Axes, abscissa: str, facet: str | None = None
+) -> Arrangement:
+    """Give each axis its place.
+
+    An axis that follows from the abscissa (a shape of the torus for each number of PEs) needs none.
+    ``facet`` forces an axis to be side by side, such as the policy.
+    """
+    rest = [name for name in axes if name != abscissa and not _follows(rows, name, abscissa)]
+    few = [name for name in rest if len(axes[name]) <= MOST_PANELS]
+    if facet is None and few:
+        facet = max(few, key=lambda name: (name == "scene", len(axes[name])))
+    values = axes.get(abscissa) or list(dict.fromkeys(row[abscissa] for row in rows))
+    return Arrangement(
+        abscissa, tuple(values), facet, tuple(name for name in rest if name != facet)
+    )
+
+
+def _follows(rows: Sequence[Row], name: str, abscissa: str) -> bool:
+    """Whether each value of the abscissa has one value of the axis; scenes are kept apart."""
+    values: dict[Hashable, set[Hashable]] = {}
+    for row in rows:
+        values.setdefault(row[abscissa], set()).add(row[name])
+    return name != "scene" and all(len(each) == 1 for each in values.values())
+
+
+def plates(
+    rows: Sequence[Row], arrangement: Arrangement
+) -> dict[str, dict[str, list[tuple[int, Row]]]]:
+    """Numbered rows of each panel of each plate, by what these are of, in the order of the axes."""
+    facet = (arrangement.facet,) if arrangement.facet else ()
+    names = (*arrangement.chosen, *facet)
+    numbered = sorted(enumerate(rows), key=lambda each: sort_key(each[1], names))
+    return {
+        plate: _split(of_plate, facet)
+        for plate, of_plate in _split(numbered, arrangement.chosen).items()
+    }
+
+
+def _split(
+    numbered: Iterable[tuple[int, Row]], names: Sequence[str]
+) -> dict[str, list[tuple[int, Row]]]:
+    """Rows by the values of some axes, in words; values that differ little have words that do."""
+    found: dict[tuple[Hashable, ...], list[tuple[int, Row]]] = {}
+    for number, row in numbered:
+        found.setdefault(tuple(row[name] for name in names), []).append((number, row))
+    said: dict[str, list[tuple[int, Row]]] = {}
+    for of in found.values():
+        text = words.point(of[0][1], names)
+        said[text if text not in said else f"{text} ({len(said) + 1})"] = of
+    return said

@@ -1,0 +1,97 @@
+"""Pictures and tables that others left in the folder: single runs, run time against error, ..."""
+
+from __future__ import annotations
+
+import base64
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from simmpp.errors import ConfigError
+from simmpp.report.figures import FIGURES
+from simmpp.report.page.profit_figures import TITLES
+
+TOPICS = {
+    "sensitivity": "Sensitivity",
+}
+"""Stems of files, as a whole or to the first hyphen, and what they are about."""
+PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
+"""Kinds of pictures."""
+OWN = (*TITLES, "accounts_by_policy", "messages_by_kind", *FIGURES)
+"""Beginnings of the stems of a report's own figures, which may be those of an earlier one."""
+MOST_ROWS = 200
+"""Lines of a table that are shown."""
+MOST_BYTES = 1_500_000
+"""Size of a picture that is put into the page."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture, in the page itself."""
+
+    name: str
+    data: str
+    """Its bytes as a ``data:`` address."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file, as it is."""
+
+    name: str
+    header: list[str]
+    rows: list[list[str]]
+
+
+class Section(NamedTuple):
+    """What there is on one topic."""
+
+    id: str
+    name: str
+    pictures: list[Picture]
+    tables: list[Table]
+
+
+def beside(folder: Path) -> list[Section]:
+    """Sections for bench, sensitivity, and the pictures in ``figures`` that no report made."""
+    sections = []
+    for topic, name in TOPICS.items():
+        stems = [topic, f"{topic}-*"]
+        tables = [_table(path) for path in _found(folder, [f"{stem}.csv" for stem in stems])]
+        sections.append(Section(topic, name, _pictures(folder, stems), tables))
+    own = tuple(stem.replace("_", "-") for stem in OWN)
+    others = [p for p in _pictures(folder / "figures", ["*"]) if not p.name.startswith(own)]
+    sections.append(Section("runs", "Pictures of single runs", others, []))
+    return [each for each in sections if each.pictures or each.tables]
+
+
+def _found(folder: Path, patterns: Iterable[str]) -> list[Path]:
+    return sorted({path for pattern in patterns for path in folder.glob(pattern)})
+
+
+def _pictures(folder: Path, stems: Iterable[str]) -> list[Picture]:
+    """Of each stem the smaller file, as text of the page."""
+    patterns = [f"{stem}{suffix}" for stem in stems for suffix in PICTURES]
+    chosen: dict[str, Path] = {}
+    for path in sorted(_found(folder, patterns), key=lambda path: -path.stat().st_size):
+        if path.stat().st_size <= MOST_BYTES:
+            chosen[path.stem] = path
+    return [_picture(chosen[stem]) for stem in sorted(chosen)]
+
+
+def _picture(path: Path) -> Picture:
+    encoded = base64.b64encode(path.read_bytes()).decode()
+    return Picture(path.stem, f"data:{PICTURES[path.suffix]};base64,{encoded}")
+
+
+def _table(path: Path) -> Table:
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file))
+    except (ValueError, csv.Error) as error:
+        raise ConfigError(f"damaged: {error}", where=str(path)) from None
+    more = len(rows) - 1 - MOST_ROWS
+    name = f"{path.name}, {MOST_ROWS} of {len(rows) - 1} rows" if more > 0 else path.name
+    return Table(name, rows[0] if rows else [], rows[1 : MOST_ROWS + 1])

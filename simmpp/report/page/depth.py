@@ -1,0 +1,68 @@
+"""Every number of every point, for the browser to show the one that is chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from simmpp.report.page import words
+from simmpp.report.page.arrangement import AXES
+from simmpp.report.page.figure import styles_of
+from simmpp.report.page.interactive import COLOURS, PARTS
+from simmpp.report.page.points import ACCOUNTS, KINDS, Points
+from simmpp.sweeps.columns import NUMBERS
+from simmpp.sweeps.profits import MEASURES, STATISTICS
+from simmpp.sweeps.tables import Row
+
+EXACT = 2**53
+"""Larger integers are no numbers of JavaScript; they travel as texts."""
+GAINS = (*(m + s for m in MEASURES for s in STATISTICS), "speedup", "efficiency", "n")
+
+
+def depth_of(points: Points) -> dict[str, Any]:
+    """Columns of points, in their order, and of rows, each with the number of its point."""
+    profits = points.profits
+    titles = list(styles_of(profits))
+    rows = [(number, row) for number, runs in enumerate(points.runs) for row in runs]
+    return {
+        "places": [_place(points, numbers[0]) for numbers in points.places],
+        "policies": [words.policy(title) for title in titles],
+        "styles": [style % COLOURS for style in styles_of(profits).values()],
+        "accounts": dict(ACCOUNTS),
+        "kinds": dict(KINDS),
+        "colours": PARTS,
+        "points": {
+            "place": points.groups,
+            "name": [_name(points, row) for row in profits],
+            "policy": [titles.index(row["policy"]) for row in profits],
+            **{name: _column(profits, name) for name in GAINS},
+        },
+        "rows": {
+            "point": [number for number, _ in rows],
+            **{name: _column((row for _, row in rows), name) for name in ("seed", *NUMBERS)},
+        },
+    }
+
+
+def _place(points: Points, number: int) -> str:
+    """What the policies of a place have in common; all there is, if it is the only one."""
+    profit = points.profits[number]
+    return words.point(profit, points.axes or ("scene", "processors", "fraction"))
+
+
+def _name(points: Points, row: Row) -> str:
+    """All keys of a point: the same however many points there are."""
+    return "|".join(str(row[name]) for name in (*AXES, *points.further, "policy"))
+
+
+def _column(rows: Iterable[Row], name: str) -> list[Any]:
+    return [_exact(row[name]) for row in rows]
+
+
+def _exact(cell: Any) -> Any:
+    """What JSON and JavaScript keep: digits of large integers, and infinity, as texts."""
+    if isinstance(cell, int):
+        return cell if abs(cell) < EXACT else str(cell)
+    if isinstance(cell, float):
+        return round(cell, 9) if words.is_finite(cell) else str(cell)
+    return cell

@@ -1,0 +1,58 @@
+"""A figure: panels that belong together, on one or several plates of which one is looked at."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from simmpp.report.bars import Bars
+from simmpp.report.curves import Panel
+from simmpp.report.page import words
+from simmpp.sweeps.tables import Row
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of a report."""
+
+    stem: str
+    """Of its files, and its name in the page."""
+    title: str
+    note: str
+    plates: Mapping[str, Sequence[Panel | Bars]]
+    """By what they are of; the empty text if there is only one."""
+
+    @property
+    def first(self) -> int:
+        """Number of the plate that shows most, which is looked at first."""
+        sizes = [sum(map(_size, panels)) for panels in self.plates.values()]
+        return sizes.index(max(sizes)) if sizes else 0
+
+    @property
+    def files(self) -> dict[str, str]:
+        """The stem of each plate's files."""
+        stems: dict[str, str] = {}
+        for plate in self.plates:
+            stem = "-".join(filter(None, (self.stem, slug(plate))))
+            stems[plate] = stem if stem not in stems.values() else f"{stem}-{len(stems)}"
+        return stems
+
+
+def _size(panel: Panel | Bars) -> int:
+    """Points, or bars, of a panel."""
+    if isinstance(panel, Bars):
+        return len(panel.rows)
+    return sum(len(curve.points) for curve in panel.curves)
+
+
+def slug(text: str) -> str:
+    """``"x = 5 %, 64 PEs"`` -> ``"x-5-64-pes"``: safe in any file system."""
+    return re.sub("[^a-z0-9.]+", "-", text.lower()).strip("-.")[:80]
+
+
+def styles_of(rows: Iterable[Row]) -> dict[str, int]:
+    """A number for the colour of each policy, the same in all figures; the paper's come first."""
+    titles = {row["policy"] for row in rows}
+    others = sorted(titles - words.DATAFLOWS.keys())
+    return {title: n for n, title in enumerate([*words.DATAFLOWS, *others]) if title in titles}

@@ -1,0 +1,216 @@
+"""What a sweep says, in words and numbers: which policy wins where, by how much, how sure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from statistics import median
+
+from simmpp.report.page import words
+from simmpp.report.page.arrangement import abscissas, arrange
+from simmpp.report.page.contest import (
+    ALONE,
+    EQUAL,
+    SURE,
+    UNKNOWN,
+    UNSURE,
+    Contest,
+    contests,
+    replicated_policies,
+)
+from simmpp.report.page.points import Points
+from simmpp.units import counted
+
+
+@dataclass(frozen=True)
+class Win:
+    """One dataflow that is the fastest at some places of one curve."""
+
+    of: str
+    """The curve, such as ``"mountain:5, 64 PEs"``."""
+    winner: str
+    where: str
+    """Values of the abscissa."""
+    places: int
+    profit: str
+    """Its time profit there."""
+    lead: str
+    """By how much it is ahead of the next, and who that is."""
+    sure: str
+
+
+def sentences(points: Points) -> list[str]:
+    """The answer in a few lines."""
+    found = contests(points)
+    if not found:
+        return ["No point has a result."]
+    lines = [_fastest(points, found), *_best_gains(points)]
+    return [*lines, *_ceiling(points, found), *_failed(points)]
+
+
+def _fastest(points: Points, found: Sequence[Contest]) -> str:
+    wins: dict[str, list[Contest]] = {}
+    for each in found:
+        if each.certainty != EQUAL:
+            wins.setdefault(points.profits[each.best]["policy"], []).append(each)
+    ranked = sorted(wins.items(), key=lambda item: -len(item[1]))
+    equal = sum(each.certainty == EQUAL for each in found)
+    parts = [f"{words.policy(title)} at {len(won)}{_of_these(won)}" for title, won in ranked]
+    parts += [f"at {equal} the two fastest are equal"] if equal else []
+    if len(found) == 1:
+        who = (
+            f"{words.policy(ranked[0][0])}{_of_these(found)}"
+            if ranked
+            else "not one: two are equal"
+        )
+        return f"The fastest dataflow is {who}."
+    axes = ", ".join(words.SHORT.get(name, name) for name in points.axes)
+    places = f"{counted(len(found), 'place')}{f' ({axes})' if axes else ''}"
+    return f"Of {places} the fastest dataflow is {'; '.join(parts)}."
+
+
+def _of_these(won: Sequence[Contest]) -> str:
+    unsure = sum(each.certainty == UNSURE for each in won)
+    if any(each.certainty == UNKNOWN for each in won):
+        return " (how sure is not known: too few seeds)"
+    if not unsure:
+        return ""
+    return f" ({f'at {unsure} of them ' if unsure < len(won) else ''}by no more than seeds differ)"
+
+
+def _best_gains(points: Points) -> Iterator[str]:
+    """Where each dataflow but the reference gains most and least."""
+    no_flows = {"object", *replicated_policies(points)}
+    titles = dict.fromkeys(row["policy"] for row in points.profits)
+    for title in (each for each in titles if each not in no_flows):
+        of_title = [
+            n
+            for n, row in enumerate(points.profits)
+            if row["policy"] == title and words.is_finite(row["time_profit"])
+        ]
+        if of_title:
+            yield _gain(points, title, of_title)
+
+
+def _gain(points: Points, title: str, numbers: Sequence[int]) -> str:
+    def profit(number: int) -> float:
+        return float(points.profits[number]["time_profit"])
+
+    best, worst = max(numbers, key=profit), min(numbers, key=profit)
+    names = list(points.axes)
+    where = words.point(points.profits[best], names)
+    aside = "; ".join(filter(None, (where, _interval(points, best))))
+    text = f"{words.capital(words.policy(title))}: time profit {profit(best):.3g}"
+    text += f" ({aside})" if aside else ""
+    if len(numbers) == 1:
+        return text + "."
+    middle = median(map(profit, numbers))
+    where = words.point(points.profits[worst], names)
+    return f"{text} at best, {middle:.3g} in the median, {profit(worst):.3g} at worst ({where})."
+
+
+def _interval(points: Points, number: int) -> str:
+    row = points.profits[number]
+    low, high = row["time_profit_low"], row["time_profit_high"]
+    return f"95 % interval {low:.3g} to {high:.3g}" if words.is_number(low) and low < high else ""
+
+
+def _ceiling(points: Points, found: Sequence[Contest]) -> Iterator[str]:
+    ceilings = [each.ceiling for each in found if each.ceiling is not None]
+    if ceilings:
+        beaten = sum(each < 1 for each in ceilings)
+        text = (
+            "With everything in every memory (replicated, no dataflow) the picture takes "
+            f"{span(1 / each for each in ceilings)} times as long as with the fastest dataflow"
+        )
+        several = f"; at {beaten or 'none'} of {len(ceilings)} places a dataflow beats it"
+        yield f"{text}{several if len(ceilings) > 1 else ''}."
+
+
+def _failed(points: Points) -> Iterator[str]:
+    missing = [n for n, runs in enumerate(points.runs) if not runs]
+    if missing:
+        yield f"{counted(len(missing), 'point')} of {len(points.runs)} failed and have no result."
+
+
+def wins(points: Points) -> list[Win]:
+    """A line for each dataflow that wins somewhere on a curve."""
+    along = abscissas(points.axes)[0]
+    curves: dict[str, list[Contest]] = {}
+    arrangement = arrange(points.profits, points.axes, along)
+    names = [name for name in points.axes if name in (*arrangement.chosen, arrangement.facet)]
+    for each in contests(points):
+        of = words.point(points.profits[each.best], names)
+        curves.setdefault(of, []).append(each)
+    return [win for of, found in curves.items() for win in _wins_of(points, of, found, along)]
+
+
+def _wins_of(points: Points, of: str, found: Sequence[Contest], along: str) -> Iterator[Win]:
+    by_winner: dict[str, list[int]] = {}
+    for place, each in enumerate(found):
+        by_winner.setdefault(_winner(points, each), []).append(place)
+    for winner, places in by_winner.items():
+        won = [found[place] for place in places]
+        yield Win(
+            of,
+            winner,
+            _where(points, found, places, along),
+            len(places),
+            span(points.profits[each.best]["time_profit"] for each in won),
+            _lead(points, won),
+            _sure(won),
+        )
+
+
+def _winner(points: Points, contest: Contest) -> str:
+    names = [contest.best, contest.second] if contest.certainty == EQUAL else [contest.best]
+    titles = [points.profits[n]["policy"] for n in names if n is not None]
+    return " = ".join(sorted(titles))
+
+
+def _where(points: Points, found: Sequence[Contest], places: Sequence[int], along: str) -> str:
+    """``"1.56 % to 40 %, 60 %"``: neighbours are joined, where they are numbers."""
+    cells = [points.profits[found[place].best][along] for place in places]
+    values = [words.value(along, cell) for cell in cells] if along != "policy" else [""]
+    if not all(map(words.is_number, points.axes.get(along, [""]))):
+        return ", ".join(values)
+    runs = groupby(zip(values, places, range(len(places)), strict=True), lambda x: x[1] - x[2])
+    ends = [[value for value, _, _ in run] for _, run in runs]
+    return ", ".join(run[0] if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in ends)
+
+
+def _lead(points: Points, won: Sequence[Contest]) -> str:
+    ahead = [each for each in won if each.certainty != EQUAL and not math.isnan(each.lead)]
+    seconds = {points.profits[each.second or 0]["policy"] for each in ahead}
+    if not ahead:
+        return ""
+    return f"{span((each.lead - 1) * 100 for each in ahead)} % over {' or '.join(sorted(seconds))}"
+
+
+def _sure(won: Sequence[Contest]) -> str:
+    counts: Mapping[str, int] = {
+        kind: sum(each.certainty == kind for each in won)
+        for kind in (SURE, UNSURE, UNKNOWN, EQUAL, ALONE)
+    }
+    if counts[UNKNOWN]:
+        return "not known: too few seeds"
+    if counts[EQUAL] == len(won):
+        return "equal in every seed"
+    if counts[ALONE] == len(won):
+        return "nothing to compare with"
+    if not counts[UNSURE]:
+        return "beyond the 95 % interval" + (" at each" if len(won) > 1 else "")
+    if counts[UNSURE] == len(won):
+        return "no difference that these seeds can show"
+    return f"beyond the 95 % interval at {counts[SURE]} of {len(won)}"
+
+
+def span(values: Iterable[float]) -> str:
+    """``"1.3 to 1.71"``; one number where all are the same."""
+    found = sorted(value for value in values if words.is_number(value))
+    if not found:
+        return ""
+    low, high = f"{found[0]:.3g}", f"{found[-1]:.3g}"
+    return low if low == high or math.isnan(found[0]) else f"{low} to {high}"

@@ -1,0 +1,174 @@
+"""What there is in a folder: the rows of a sweep, of a run, or of the paper's experiments."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from simmpp.errors import ConfigError
+from simmpp.report.bench import BENCH
+from simmpp.report.reproduce import CLAIMS, EXPERIMENTS
+from simmpp.report.rungs import bench_columns
+from simmpp.report.verdict import COLUMNS as CLAIM_COLUMNS
+from simmpp.sweeps.columns import COLUMNS, KEYS, METHOD, NUMBERS
+from simmpp.sweeps.profits import profit_columns
+from simmpp.sweeps.rows import in_order
+from simmpp.sweeps.sweep import PROFITS, RECORD, RESULTS, TIMINGS
+from simmpp.sweeps.tables import Row, read_csv
+
+INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS}, {"fraction", "effective_fraction"}
+MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS}
+"""A memory given in bytes has no fraction, a failed point no results, and a method does not know
+all of them."""
+
+
+@dataclass(frozen=True)
+class Folder:
+    """Rows and what lies beside them."""
+
+    path: Path
+    rows: list[Row]
+    further: tuple[str, ...] = ()
+    """Columns of keys beyond those that all rows have, and the method where it changes."""
+    experiments: Mapping[str, list[Row]] = field(default_factory=dict)
+    """Rows of the paper's experiments by name; ``rows`` has all of them, each once."""
+    claims: Sequence[Mapping[str, str]] = ()
+    timings: Sequence[Mapping[str, str]] = ()
+    profits: Sequence[Row] = ()
+    """Those of ``profits.csv``: their intervals know how the number of seeds was chosen."""
+    bench: Sequence[Row] = ()
+    """Those of ``bench.csv``."""
+    record: Mapping[str, Any] = field(default_factory=dict)
+    """``run.json``."""
+
+    @property
+    def seeds(self) -> int:
+        """How many different ones there are."""
+        return len({row["seed"] for row in self.rows})
+
+    @property
+    def planned(self) -> int:
+        """Rows that there will be; as many as there are, where nothing says how many."""
+        points = self.record.get("points")
+        return points if isinstance(points, int) else len(self.rows)
+
+    @property
+    def failed(self) -> list[Row]:
+        """Rows with an error in place of results."""
+        return [row for row in self.rows if row["error"]]
+
+
+def read_folder(path: Path, name: str = "DIR") -> Folder:
+    """Read a folder; ``name`` is the argument it was given as.
+
+    Raises ConfigError, one line, if there are no rows or a file is damaged.
+    """
+    if not path.is_dir():
+        raise ConfigError(f"{name}: value {str(path)!r}: expected a folder")
+    claims = _table(path / CLAIMS, CLAIM_COLUMNS)
+    timings = _table(path / TIMINGS, ("policy", "trace_s", "wall_s"))
+    record = _record(path / RECORD)
+    bench = _numbers(path / BENCH, bench_columns(()))
+    if (path / RESULTS).is_file():
+        rows, further = read_rows(path / RESULTS)
+        profits = _numbers(path / PROFITS, profit_columns())
+        return Folder(path, rows, further, {}, claims, timings, profits, bench, record)
+    found = {each: path / f"{each}.csv" for each in EXPERIMENTS if (path / f"{each}.csv").is_file()}
+    if not found and not bench:
+        raise ConfigError(
+            f"{name}: value {str(path)!r}: there are no rows: expected {RESULTS} (of run or "
+            f"sweep), {EXPERIMENTS[0]}.csv (of reproduce) or {BENCH} (of bench)"
+        )
+    experiments = {each: read_rows(file)[0] for each, file in found.items()}
+    return Folder(path, _once(experiments), (), experiments, claims, timings, (), bench, record)
+
+
+def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:
+    """All rows; a point that several experiments have is there once."""
+    rows = {tuple(row[key] for key in KEYS): row for each in experiments.values() for row in each}
+    return in_order(rows.values())
+
+
+def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
+    """The rows of a ``results.csv`` with numbers as such, and the columns of further keys."""
+    texts = _table(path, COLUMNS)
+    further = tuple(name for name in (texts[0] if texts else ()) if name not in COLUMNS)
+    if len({row[METHOD] for row in texts}) > 1:
+        further = (*further, METHOD)
+    return [_typed(row, path, line) for line, row in enumerate(texts, 2)], further
+
+
+def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
+    """A CSV file's rows; none if there is no such file."""
+    if not path.is_file():
+        return []
+    try:
+        return read_csv(path, columns)
+    except (ValueError, csv.Error) as error:
+        raise ConfigError(f"damaged: {error}", where=str(path)) from None
+
+
+def _numbers(path: Path, columns: Sequence[str]) -> list[Row]:
+    """A CSV file's rows, with numbers where cells look like some."""
+    return [{name: _number(cell) for name, cell in row.items()} for row in _table(path, columns)]
+
+
+def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:
+    """Numbers where numbers belong, and in further keys where they look like some."""
+    typed: Row = {}
+    for name, cell in row.items():
+        try:
+            typed[name] = _cell(name, cell)
+        except ValueError:
+            expected = "an integer" if name in INTEGERS else "a number"
+            raise ConfigError(
+                f"column {name}: value {cell!r}: expected {expected}", where=str(path), line=line
+            ) from None
+    if not typed["error"] and typed["makespan_ps"] == "":
+        raise ConfigError("expected results or an error", where=str(path), line=line)
+    return typed
+
+
+def _cell(name: str, text: str) -> int | float | str:
+    if name in MAY_BE_EMPTY and text == "":
+        return ""
+    if name in INTEGERS:
+        return int(text)
+    if name in NUMERIC:
+        return _finite(text)
+    return text if name in COLUMNS else _number(text)
+
+
+def _number(text: str) -> int | float | str:
+    kinds: tuple[Callable[[str], int | float], ...] = (int, _finite)
+    for kind in kinds:
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(text)
+    return number
+
+
+def _record(path: Path) -> dict[str, Any]:
+    """``run.json``; empty if there is none."""
+    if not path.is_file():
+        return {}
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ConfigError(f"damaged: {error}", where=str(path)) from None
+    if not isinstance(record, dict):
+        raise ConfigError("damaged: expected a JSON object", where=str(path))
+    return record

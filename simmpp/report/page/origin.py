@@ -1,0 +1,83 @@
+"""What rows are of: scenes, machine, configuration, versions and how long it took."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from simmpp.report.page import words
+from simmpp.report.page.folder import Folder
+from simmpp.units import counted
+
+UNSAID = ("sweep", "check", "seeds", "policy")
+"""Keys of a configuration that the figures show."""
+
+
+def facts(folder: Folder) -> list[str]:
+    """One line: scenes, PEs, policies, seeds, rows."""
+    rows = folder.rows
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    processors = sorted({row["processors"] for row in rows})
+    named = ", ".join(scenes) if len(scenes) <= 4 else counted(len(scenes), "scene")
+    if not rows:
+        return ["no rows yet"]
+    pes = words.said("processors", processors[0])
+    if len(processors) > 1:
+        pes = f"{processors[0]} to {processors[-1]} PEs"
+    return [named, pes, counted(folder.seeds, "seed"), counted(len(rows), "row")]
+
+
+def origin(folder: Folder) -> list[tuple[str, str]]:
+    """Names and values, as text."""
+    return [*_settings(folder), *_machines(folder), *_versions(folder), *_times(folder)]
+
+
+def _settings(folder: Folder) -> Iterator[tuple[str, str]]:
+    config = folder.record.get("config")
+    if isinstance(config, dict):
+        for key, value in config.items():
+            if key not in UNSAID and value not in (None, {}, []):
+                yield key, _text(value)
+    if chosen := folder.record.get("set"):
+        yield "set", _text(chosen)
+
+
+def _text(value: Any) -> str:
+    """Short and readable: mappings as ``key value``, without what is not given."""
+    if isinstance(value, dict):
+        return ", ".join(f"{k}: {_text(v)}" for k, v in value.items() if v not in (None, {}))
+    if isinstance(value, list):
+        return ", ".join(map(_text, value))
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def _machines(folder: Folder) -> Iterator[tuple[str, str]]:
+    machines = folder.record.get("machines") or [folder.record.get("machine")]
+    for machine in machines if isinstance(machines, list) else []:
+        if isinstance(machine, dict):
+            shape = " x ".join(map(str, machine.get("shape") or ()))
+            yield "machine", f"{machine.get('name', '')} {shape}".strip()
+
+
+def _versions(folder: Folder) -> Iterator[tuple[str, str]]:
+    versions = folder.record.get("versions")
+    if isinstance(versions, dict):
+        yield "versions", ", ".join(f"{name} {version}" for name, version in versions.items())
+
+
+def _times(folder: Folder) -> Iterator[tuple[str, str]]:
+    seconds: dict[str, float] = {}
+    for row in folder.timings:
+        if words.is_finite(wall_s := _number(row["wall_s"])):
+            seconds[row["policy"]] = seconds.get(row["policy"], 0.0) + wall_s
+    if seconds:
+        each = ", ".join(f"{words.policy(title)} {s:.3g} s" for title, s in seconds.items())
+        yield "time to simulate", f"{sum(seconds.values()):.3g} s on one core: {each}"
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return float("nan")

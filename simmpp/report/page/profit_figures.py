@@ -1,0 +1,147 @@
+"""Profits, speed-up and efficiency of any sweep as curves with their intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+
+from simmpp.report.curves import Curve, Panel, Scale, Spread
+from simmpp.report.page import words
+from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
+from simmpp.report.page.figure import Figure, slug, styles_of
+from simmpp.sweeps.tables import Row
+
+MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
+"""A measure is shown along so many axes; the second has at least so many values, and at most so
+many plates to choose from."""
+MARGIN, LOG_MARGIN = 1.06, 1.2
+"""Room beyond the largest value, and beyond both ends of a logarithmic axis."""
+TITLES = {
+    "time_profit": ("Time profit", "T(object dataflow) / T(policy)"),
+    "message_profit": ("Message profit", "messages(object dataflow) / messages(policy)"),
+    "speedup": ("Speed-up", "T(1 PE that holds everything) / T(policy)"),
+    "efficiency": ("Efficiency", "speed-up / PEs"),
+}
+PROFITS, OF_MACHINE = ("time_profit", "message_profit"), ("speedup", "efficiency")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The points that figures show, and those of another sweep that they are compared with."""
+
+    profits: Sequence[Row]
+    axes: Axes
+    before: Sequence[Row] = ()
+    marked: Mapping[str, frozenset[int]] = field(default_factory=dict)
+    """Numbers of points to be looked at, by measure."""
+
+    @property
+    def rows(self) -> list[Row]:
+        """All of them; numbers of points are those of ``profits``."""
+        return [*self.profits, *self.before]
+
+
+def profit_figures(shown: Shown) -> Iterator[Figure]:
+    """Both profits along the best axes; speed-up and efficiency along the number of PEs."""
+    best, *others = abscissas(shown.axes)
+    long = (name for name in others if len(shown.axes[name]) >= ENOUGH and _is_short(shown, name))
+    along = [best, *long][:MOST_ABSCISSAS]
+    for measure in PROFITS:
+        title, _ = TITLES[measure]
+        for name in along:
+            several = len(along) > 1
+            over = f"{title} over {words.ALONG.get(name, name)}" if several else title
+            yield _figure(shown, measure, name, over, f"-over-{slug(name)}" if several else "")
+    if "processors" in shown.axes:
+        for measure in OF_MACHINE:
+            name = "processors" if _is_short(shown, "processors") else best
+            yield _figure(shown, measure, name, TITLES[measure][0])
+
+
+def _is_short(shown: Shown, along: str) -> bool:
+    """Whether a figure along an axis has few plates."""
+    rows = shown.rows
+    return len(plates(rows, arrange(rows, shown.axes, along))) <= MOST_PLATES
+
+
+def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = "") -> Figure:
+    rows = shown.rows
+    arrangement = arrange(rows, shown.axes, along)
+    found = {
+        plate: _panels(shown, panels, measure, arrangement)
+        for plate, panels in plates(rows, arrangement).items()
+    }
+    numeric = all(map(words.is_number, arrangement.values))
+    spread = "" if shown.before else f", {'bands' if numeric else 'bars'} are 95 % intervals"
+    note = f"{TITLES[measure][1]}; {spread_note(rows, spread)}"
+    return Figure(measure.replace("_", "-") + suffix, title, note, found)
+
+
+def spread_note(profits: Sequence[Row], spread: str) -> str:
+    """What lines and bands are."""
+    least, most = (f(row["n"] for row in profits) for f in (min, max))
+    if most < 2:
+        return "one seed, so nothing is known of its spread"
+    seeds = f"{most} seeds" if least == most else f"{least} to {most} seeds"
+    return f"means of {seeds}{spread}"
+
+
+def _panels(
+    shown: Shown,
+    panels: Mapping[str, Sequence[tuple[int, Row]]],
+    measure: str,
+    arrangement: Arrangement,
+) -> list[Panel]:
+    x, places = words.abscissa(arrangement.abscissa, list(arrangement.values))
+    curves: dict[str, list[Curve]] = {}
+    for title, numbered in panels.items():
+        placed = [(number, places[row[arrangement.abscissa]], row) for number, row in numbered]
+        curves[title] = list(_curves(shown, placed, measure))
+    y = _scale(TITLES[measure][0].lower(), chain(*curves.values()))
+    level = 1.0 if measure in PROFITS else None
+    return [Panel(title, x, y, found, level=level) for title, found in curves.items()]
+
+
+def _scale(label: str, curves: Iterable[Curve]) -> Scale:
+    """One scale for all panels of a plate; logarithmic if values differ much."""
+    spreads = [spread for curve in curves for spread in curve.points.values()]
+    if not spreads:
+        return Scale(label)
+    low, high = min(each.low for each in spreads), max(each.high for each in spreads)
+    if low > 0 and words.is_log(each.mean for each in spreads):
+        return Scale(label, is_log=True, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
+    return Scale(label, limits=(min(low, 0.0), high * MARGIN))
+
+
+Placed = tuple[int, float, Row]
+"""A point: its number, where it lies on the abscissa, its row."""
+
+
+def _curves(shown: Shown, placed: Sequence[Placed], measure: str) -> Iterator[Curve]:
+    """One curve for each policy, in the order of their colours; what was before lies behind."""
+    last = len(shown.profits)
+    finite = [each for each in placed if words.is_finite(each[2][measure])]
+    for is_before in (True, False):
+        for title, style in styles_of(shown.rows).items():
+            of = [p for p in finite if p[2]["policy"] == title and (p[0] >= last) == is_before]
+            if of:
+                points = {x: _spread(row, measure) for _, x, row in of}
+                numbers = {} if is_before else {x: number for number, x, _ in of}
+                marked = shown.marked.get(measure, frozenset())
+                yield Curve(
+                    words.policy(title),
+                    points,
+                    style=style,
+                    rows=numbers,
+                    is_before=is_before,
+                    marked=frozenset(x for x, number in numbers.items() if number in marked),
+                )
+
+
+def _spread(row: Row, measure: str) -> Spread:
+    """The mean and its interval; where there is none, as for one seed, no more than the mean."""
+    mean = row[measure]
+    ends = [row.get(measure + end, "") for end in ("_low", "_high")]
+    low, high = (end if words.is_number(end) else mean for end in ends)
+    return Spread(mean, low, high)

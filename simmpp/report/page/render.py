@@ -1,0 +1,32 @@
+"""HTML from templates, with everything escaped that comes from rows: the only import of jinja2."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from simmpp.report.page.interactive import script
+
+ASSETS = "assets"
+
+
+def rendered(template: str, values: Mapping[str, Any]) -> str:
+    """A page that needs nothing else: styles, scripts and data are in it."""
+    loader = jinja2.PackageLoader("simmpp.report.page", ASSETS)
+    environment = jinja2.Environment(
+        loader=loader,
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
+
+    def asset(name: str) -> Markup:
+        return Markup(environment.get_template(name).render())
+
+    return environment.get_template(template).render(**values, asset=asset, plotly=Markup(script()))

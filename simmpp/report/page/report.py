@@ -1,0 +1,163 @@
+"""``report.html`` of a folder, put together, and its figures as PNG and SVG."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from simmpp.report.page import words
+from simmpp.report.page.accuracy import accuracy_figures
+from simmpp.report.page.arrangement import abscissas
+from simmpp.report.page.bar_figures import bar_figures
+from simmpp.report.page.beside import beside
+from simmpp.report.page.depth import depth_of
+from simmpp.report.page.figure import Figure
+from simmpp.report.page.findings import sentences, wins
+from simmpp.report.page.folder import Folder
+from simmpp.report.page.interactive import drawn
+from simmpp.report.page.origin import facts, origin
+from simmpp.report.page.paper import paper_figures
+from simmpp.report.page.points import Points, points_of
+from simmpp.report.page.profit_figures import Shown, profit_figures
+from simmpp.report.page.render import rendered
+from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.tables import write_text
+from simmpp.units import counted
+
+PAGE, FIGURES = "report.html", "figures"
+
+
+@dataclass(frozen=True)
+class Group:
+    """A section of figures."""
+
+    id: str
+    name: str
+    text: str
+    figures: Sequence[Figure]
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that a page shows."""
+
+    folder: Folder
+    points: Points
+    groups: Sequence[Group]
+
+    @property
+    def figures(self) -> list[Figure]:
+        """Of all sections."""
+        return [figure for group in self.groups for figure in group.figures]
+
+
+def report_of(folder: Folder) -> Report:
+    """Work out what the rows of a folder show."""
+    points = points_of(folder.rows, folder.further, folder.profits)
+    accuracy = Group("accuracy", "Run time against error", "", accuracy_figures(folder.bench))
+    if not any(points.runs):
+        return Report(folder, points, [accuracy] if folder.bench else [])
+    clicking = "Click a point to see it in depth; click a name to hide its curve."
+    paper = paper_figures(folder, points)
+    groups = [
+        Group("paper", "The paper's figures", clicking, paper),
+        Group(
+            "profits", "Profits", clicking, list(profit_figures(Shown(points.profits, points.axes)))
+        ),
+        Group("accounts", "Time and messages", "", list(bar_figures(points))),
+        accuracy,
+    ]
+    return Report(folder, points, [group for group in groups if group.figures])
+
+
+def write_page(report: Report, *, is_running: bool = False) -> Path:
+    """Write ``report.html``; one that is running reloads itself."""
+    path = report.folder.path / PAGE
+    write_text(rendered("report.html", _values(report, is_running)), path)
+    return path
+
+
+def _values(report: Report, is_running: bool) -> dict[str, Any]:
+    folder, points = report.folder, report.points
+    pictures = beside(folder.path)
+    along = abscissas(points.axes)[0]
+    return {
+        "title": folder.path.resolve().name or "report",
+        "facts": facts(folder),
+        "live": _progress(folder) if is_running else "",
+        "warning": _warning(folder),
+        "sentences": sentences(points) if folder.rows or not folder.bench else [],
+        "wins": wins(points),
+        "along": {"policy": "", "fraction": "x"}.get(along, along),
+        "claims": folder.claims,
+        "verdicts": _verdicts(folder),
+        "groups": [(g.id, g.name, g.text, g.figures) for g in report.groups],
+        "files": not is_running,
+        "has_points": any(points.runs),
+        "beside": pictures,
+        "sections": _sections(report, [(id, name) for id, name, _, _ in pictures]),
+        "origin": origin(folder),
+        "made": "Made by simmpp from the rows in this folder; nothing is loaded from anywhere.",
+        "data": _data(report, is_running),
+    }
+
+
+def _progress(folder: Folder) -> str:
+    failed = f", {len(folder.failed)} failed" if folder.failed else ""
+    return f"running: {len(folder.rows)} of {counted(folder.planned, 'row')} done{failed}"
+
+
+def _warning(folder: Folder) -> str:
+    if not folder.failed:
+        return ""
+    errors = dict.fromkeys(str(row["error"]) for row in folder.failed)
+    first = next(iter(errors))
+    more = f" (and {counted(len(errors) - 1, 'other error')})" if len(errors) > 1 else ""
+    return f"{counted(len(folder.failed), 'row')} failed: {first}{more}"
+
+
+def _verdicts(folder: Folder) -> str:
+    """How many claims hold, in part, and do not."""
+    counts = Counter(claim["holds"] for claim in folder.claims)
+    words = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
+    parts = [f"{counts[k]} {one if counts[k] == 1 else more}" for k, (one, more) in words.items()]
+    return f"Of {len(folder.claims)} claims: {', '.join(parts)}."
+
+
+def _sections(report: Report, others: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    claims = [("claims", "Claims")] if report.folder.claims else []  # what a reproduction is for
+    depth = [("point", "One point")] if any(report.points.runs) else []
+    groups = [(group.id, group.name) for group in report.groups]
+    return [*claims, ("summary", "Summary"), *groups, *depth, *others, ("made", "How it was made")]
+
+
+def _data(report: Report, is_running: bool) -> dict[str, Any]:
+    """What the scripts of the page read."""
+    return {
+        "figures": {figure.stem: figure_data(figure) for figure in report.figures},
+        "depth": depth_of(report.points),
+        "first": _first(report.points),
+        "live": is_running,
+    }
+
+
+def figure_data(figure: Figure) -> dict[str, Any]:
+    """A figure's plates as plotly draws them."""
+    plates = []
+    for panels in figure.plates.values():
+        title = next((t for t in (getattr(panel, "legend", "") for panel in panels) if t), "")
+        shown = [drawn(panel) for panel in panels]
+        if len(shown) == 1:
+            shown[0]["title"] = ""
+        plates.append({"title": title, "panels": shown})
+    return {"plates": plates}
+
+
+def _first(points: Points) -> int:
+    """The point shown before one is chosen: the one that gains most."""
+    gains = [row["time_profit"] for row in points.profits]
+    shown = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
+    return max(shown, key=lambda n: float(gains[n]), default=0)

@@ -1,0 +1,1 @@
+"""Runs as timelines: slices of the time of every PE, arrows between them, and counters."""

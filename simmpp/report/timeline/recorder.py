@@ -1,0 +1,69 @@
+"""Writes the timelines of several policies into one file while they are simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Protocol
+
+from simmpp.engine.log import Sink
+from simmpp.machine.machine import Machine
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.timeline.slices import Part, Rows, Timeline, Window
+from simmpp.sweeps.point import PolicyRun
+
+SUFFIXES = (".json", ".json.gz", ".parquet")
+
+
+class TimelineFile(Protocol):
+    """A format."""
+
+    def begin(self, title: str, processors: int) -> None:
+        """What is written from now on is the run of this policy."""
+
+    def add(self, part: Part) -> None:
+        """Write a part of the timeline."""
+
+    def close(self) -> None:
+        """End the file; what was written can be read."""
+
+
+class TimelineRecorder:
+    """One file; its format follows from its name, one of SUFFIXES."""
+
+    needs_hops = False
+
+    def __init__(self, path: Path, machine: Machine, window: Window | None = None) -> None:
+        self._file = _file(path)
+        self._machine = machine
+        self._window = window or Window()
+        self._timeline: Timeline | None = None
+
+    def begin(self, policy: PolicyParameters) -> Sink:
+        """What gets the event log of a policy's run."""
+        self._file.begin(policy.title, self._machine.processors)
+        timeline = Timeline(self._machine.processors, self._machine.probe_ps, self._window)
+        self._timeline = timeline
+
+        def write(rows: Rows) -> None:
+            self._file.add(timeline.add(rows))
+
+        return write
+
+    def end(self, run: PolicyRun) -> None:
+        """The run that was begun last is over."""
+        if self._timeline is not None:
+            self._file.add(self._timeline.end(run.result.makespan_ps))
+
+    def close(self) -> None:
+        """End the file; what was simulated until now can be read."""
+        self._file.close()
+
+
+def _file(path: Path) -> TimelineFile:
+    if path.name.lower().endswith(".parquet"):
+        from simmpp.report.timeline.table import TimelineTable
+
+        return TimelineTable(path)
+    from simmpp.report.timeline.trace_events import TraceEvents
+
+    return TraceEvents(path)

@@ -1,0 +1,180 @@
+"""A timeline: what each PE does from the start to the end of a run, without gaps.
+
+The event log says when a PE computes, receives and sends; what lies between is idle time, and the
+look into an empty inbox, with which a computation begins, is told apart as a probe. All times are
+integer picoseconds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.engine.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
+from simmpp.engine.log import EVENT_KINDS
+
+IDLE, PROBE = len(EVENT_KINDS), len(EVENT_KINDS) + 1
+SLICE_KINDS = (*EVENT_KINDS, "idle", "probe")
+"""Names of the field ``event`` of a slice."""
+COMMUNICATION = (RECEIVE, SEND, PROBE)
+"""Slices that a PE's account of communication is the sum of."""
+
+Rows = NDArray[np.void]
+Times = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Window:
+    """The part of a run that is looked at."""
+
+    start_ps: int = 0
+    end_ps: int = np.iinfo(np.int64).max
+
+    def holds(self, times_ps: Times) -> NDArray[np.bool_]:
+        """Which instants lie in it; both ends do."""
+        return (times_ps >= self.start_ps) & (times_ps <= self.end_ps)
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A stretch of a timeline."""
+
+    slices: Rows
+    """(n,) EVENT without arrivals, with IDLE and PROBE; those of a PE touch one another."""
+    arrivals: Rows
+    """(a,) EVENT."""
+    loads: Rows
+    """(c,) EVENT: slices at whose end the PE's load, or its ready part, was another than before."""
+    arrows: Rows
+    """(m,) EVENT: RECEIVE rows of messages of which both ends are in the window."""
+    tails_ps: Times
+    """(m,) int64: when the packing of the message of each arrow began."""
+    flights_ps: Times
+    """(f,) int64: when the number of messages in flight changed."""
+    in_flight: Times
+    """(f,) int64: their number from then on."""
+
+
+class Timeline:
+    """Makes a timeline of the rows of one run's event log, part by part, in bounded memory."""
+
+    def __init__(self, processors: int, probe_ps: int, window: Window) -> None:
+        self._probe_ps = probe_ps
+        self._window = window
+        self._ended_ps = np.zeros(processors, np.int64)
+        self._held = np.full((2, processors), NONE, np.int64)
+        self._in_flight = 0
+        self._packed = np.zeros((2, 0), np.int64)
+
+    def add(self, rows: Rows) -> Part:
+        """The part that more rows of the event log make."""
+        arrived = rows["event"] == ARRIVAL
+        return self._part(self._filled(rows[~arrived]), rows[arrived])
+
+    def end(self, makespan_ps: int) -> Part:
+        """The last part: idle to the end."""
+        idle = np.flatnonzero(self._ended_ps < makespan_ps)
+        rows = _idle_rows(idle, self._ended_ps[idle], np.full(len(idle), makespan_ps))
+        return self._part(rows, np.zeros(0, EVENT))
+
+    def _part(self, slices: Rows, arrivals: Rows) -> Part:
+        flights_ps, in_flight = self._flights(slices, arrivals)
+        loads = self._changed(slices)
+        slices = self._cut(slices)
+        arrows, tails_ps = self._arrows(slices)
+        arrivals = arrivals[self._window.holds(arrivals["time_ps"])]
+        return Part(slices, arrivals, loads, arrows, tails_ps, flights_ps, in_flight)
+
+    def _filled(self, work: Rows) -> Rows:
+        """Work with what lies between: idle time, and the probes that computations begin with."""
+        before_ps = _before(work["pe"], work["end_ps"], self._ended_ps)
+        gaps = np.flatnonzero(work["time_ps"] > before_ps)
+        idle = _idle_rows(work["pe"][gaps], before_ps[gaps], work["time_ps"][gaps])
+        probing = np.flatnonzero((work["event"] == COMPUTE) & (self._probe_ps > 0))
+        probes = work[probing]
+        work = work.copy()
+        work["time_ps"][probing] += self._probe_ps
+        probes["event"], probes["end_ps"] = PROBE, work["time_ps"][probing]
+        probes["tests"] = probes["rays"] = 0
+        probes["load"] = probes["ready"] = NONE  # not known in between
+        places = (3 * gaps, 3 * probing + 1, 3 * np.arange(len(work)) + 2)
+        order = np.argsort(np.concatenate(places))
+        filled: Rows = np.concatenate([idle, probes, work])[order]
+        return filled
+
+    def _changed(self, slices: Rows) -> Rows:
+        """Slices in the window that left the PE with other rays than it had before."""
+        known = slices[slices["load"] != NONE]
+        same = [
+            _before(known["pe"], known[name].astype(np.int64), last) == known[name]
+            for name, last in zip(("load", "ready"), self._held, strict=True)
+        ]
+        changed: Rows = known[~(same[0] & same[1]) & self._window.holds(known["end_ps"])]
+        return changed
+
+    def _cut(self, slices: Rows) -> Rows:
+        """Slices cut at the edges of the window; those outside left out."""
+        window = self._window
+        begins_ps, ends_ps = slices["time_ps"], slices["end_ps"]
+        inside = (ends_ps > window.start_ps) & (begins_ps < window.end_ps)
+        inside |= (begins_ps == ends_ps) & window.holds(begins_ps)
+        slices = slices[inside]
+        slices["time_ps"] = np.maximum(slices["time_ps"], window.start_ps)
+        slices["end_ps"] = np.minimum(slices["end_ps"], window.end_ps)
+        return slices
+
+    def _arrows(self, slices: Rows) -> tuple[Rows, Times]:
+        """Messages received here, and when their packing began: sends are kept until then."""
+        sent = slices[(slices["event"] == SEND) & (slices["number"] != NONE)]
+        received = slices[slices["event"] == RECEIVE]
+        packed = np.array([_keys(sent["pe"], sent["number"]), sent["time_ps"]], np.int64)
+        packed = np.concatenate([self._packed, packed], axis=1)
+        packed = packed[:, np.argsort(packed[0])]
+        wanted = _keys(received["other"], received["number"])
+        found = np.searchsorted(packed[0], wanted)
+        has_tail = np.append(packed[0], NONE)[found] == wanted
+        found = found[has_tail]
+        tails_ps = packed[1, found]
+        self._packed = np.delete(packed, found, axis=1)
+        return received[has_tail], tails_ps
+
+    def _flights(self, slices: Rows, arrivals: Rows) -> tuple[Times, Times]:
+        """Messages in flight: departures and arrivals come in the order of time, part by part."""
+        departed = slices["end_ps"][(slices["event"] == SEND) & (slices["number"] != NONE)]
+        times_ps = np.concatenate([departed, arrivals["end_ps"]])
+        changes = np.repeat([1, -1], [len(departed), len(arrivals)])
+        order = np.argsort(times_ps, kind="stable")
+        times_ps = times_ps[order]
+        in_flight = self._in_flight + np.cumsum(changes[order])
+        self._in_flight = int(in_flight[-1]) if len(in_flight) else self._in_flight
+        is_last = np.diff(times_ps, append=NONE) != 0
+        is_last &= self._window.holds(times_ps)
+        return times_ps[is_last], in_flight[is_last]
+
+
+def _before(pes: Rows, values: Times, last: Times) -> Times:
+    """What each row's PE had in its row before, or in ``last`` (nb,), which is then renewed."""
+    by_pe = np.argsort(pes, kind="stable")
+    sorted_pes, sorted_values = pes[by_pe], values[by_pe]
+    is_first = np.diff(sorted_pes, prepend=NONE) != 0
+    before = np.empty_like(values)
+    before[by_pe] = np.where(is_first, last[sorted_pes], np.roll(sorted_values, 1))
+    last[sorted_pes] = sorted_values  # of equal PEs the last one stays
+    return before
+
+
+def _keys(pes: NDArray[Any], numbers: NDArray[Any]) -> Times:
+    """A message by its sender and send number."""
+    keys: Times = (pes.astype(np.int64) << 40) | numbers
+    return keys
+
+
+def _idle_rows(pes: NDArray[np.signedinteger], begins_ps: Times, ends_ps: Times) -> Rows:
+    rows = np.zeros(len(pes), EVENT)
+    rows["event"], rows["pe"], rows["time_ps"], rows["end_ps"] = IDLE, pes, begins_ps, ends_ps
+    rows["other"] = rows["kind"] = rows["number"] = NONE
+    rows["load"] = rows["ready"] = NONE
+    return rows

@@ -1,0 +1,204 @@
+"""The numbers behind a run's pictures are those of its result, its log and the oracle's torus."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+from builders import Case, cases, placement_of, random_case, with_policy, workload_of
+from hypothesis import given, settings
+from oracles.costs import hops_from, neighbours
+
+from simmpp.engine.layout import COMPUTE, NONE, RECEIVE, SEND
+from simmpp.engine.result import Result
+from simmpp.engine.simulate import simulate
+from simmpp.machine.machine import CopyCost, Machine, TestCost
+from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS
+from simmpp.machine.torus import route
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.motion.counters import BINS, MotionRecorder
+from simmpp.report.motion.motion import Motion, marks_of, motion_of
+from simmpp.sweeps.point import Point, PolicyRun
+
+many = settings(max_examples=40, deadline=None, derandomize=True)
+
+
+def seen(case: Case, log: bool = False, least_ps: int = 0) -> tuple[Result, Motion]:
+    """A run and the data of its pictures; and its event log, from another run."""
+    nb = case.machine.processors
+    load = np.bincount(case.placement.pixel_pes, minlength=nb).astype(np.int64)
+    recorder = MotionRecorder(case.machine, load, least_ps)
+    point = Point(cast(Any, None), case.workload, case.machine, case.placement, seed=0)
+    options: dict[str, Any] = {"ready_order": case.ready_order, "record_hops": True}
+    arguments = (case.workload, case.machine, case.placement, case.policy)
+    result = simulate(*arguments, **options, log=recorder)
+    counters = recorder.end(result.makespan_ps)
+    motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0), counters)
+    return simulate(*arguments, **options, log=True) if log else result, motion
+
+
+@given(case=cases())
+@many
+def test_accounts_of_the_bins_are_those_of_the_result(case: Case) -> None:
+    result, motion = seen(case)
+    assert motion.compute_ps.sum(axis=1).tolist() == result.compute_ps.tolist()
+    assert motion.communication_ps.sum(axis=1).tolist() == result.communication_ps.tolist()
+    assert motion.waiting_ps.sum(axis=1).tolist() == result.waiting_ps.tolist()
+    assert motion.waiting_ps.min() >= 0
+    assert motion.compute_ps.shape[1] <= BINS
+    assert motion.times_ps[-1] == result.makespan_ps
+    assert 0 <= motion.utilisation.min() <= motion.utilisation.max() <= 1
+
+
+@given(case=cases())
+@many
+def test_traffic_is_all_messages_and_bytes(case: Case) -> None:
+    result, motion = seen(case)
+    assert int(motion.messages.sum()) == result.messages
+    assert int(motion.bytes.sum()) == result.bytes_sent
+    assert tuple(motion.sizes.sum(axis=1).tolist()) == result.messages_by_kind
+    assert int(motion.batches[0].sum()) == result.ray_messages
+    assert int(motion.batches[1].sum()) == result.rays_sent
+
+
+@given(case=cases())
+@many
+def test_bytes_over_links_are_bytes_times_hops(case: Case) -> None:
+    _, motion = seen(case)
+    shape, nb = case.machine.shape, case.machine.processors
+    far = np.array([[hops_from(shape, i)[j] for j in range(nb)] for i in range(nb)])
+    assert int(motion.link_bytes.sum()) == int((motion.bytes * far).sum())
+    expected = [int(motion.messages[far == h].sum()) for h in range(len(motion.hops))]
+    assert motion.hops.tolist() == expected
+
+
+@given(case=cases())
+@many
+def test_rays_are_finished_when_the_log_says(case: Case) -> None:
+    result, motion = seen(case, log=True)
+    assert result.log is not None
+    computed = result.log[result.log["event"] == COMPUTE]
+    edges = motion.times_ps
+    done = [int(computed["rays"][computed["end_ps"] <= edge].sum()) for edge in edges[1:]]
+    assert np.cumsum(motion.finished).tolist() == done
+    assert done[-1] == result.rays
+    assert motion.marks_ps[100] <= result.makespan_ps
+    if result.rays:
+        early = computed["end_ps"] <= motion.marks_ps[95]
+        assert int(computed["rays"][early].sum()) * 100 >= 95 * result.rays
+
+
+@given(case=cases())
+@many
+def test_mean_load_is_that_of_the_log(case: Case) -> None:
+    result, motion = seen(case, log=True)
+    assert result.log is not None
+    started = np.bincount(case.placement.pixel_pes, minlength=case.machine.processors)
+    for pe, mean in enumerate(motion.load):
+        rows = result.log[(result.log["pe"] == pe) & (result.log["event"] != 0)]
+        times = [0, *rows["end_ps"].tolist(), result.makespan_ps]
+        loads = [int(started[pe]), *rows["load"].tolist()]
+        held = sum(n * (b - a) for n, a, b in zip(loads, times[:-1], times[1:], strict=True))
+        assert abs(mean * result.makespan_ps - held) <= 1e-9 * held
+
+
+@given(case=cases())
+@many
+def test_memory_and_pixels_add_up(case: Case) -> None:
+    result, motion = seen(case)
+    assert int(motion.pixel_cost_ps.sum()) == int(result.compute_ps.sum())
+    assert int(motion.peak_bytes.max()) == result.peak_bytes
+    assert int(motion.queue_bytes.max()) == result.peak_rays * case.machine.ray_bytes
+    most = motion.resident_bytes + motion.transient_bytes + motion.queue_bytes
+    assert (motion.peak_bytes <= most).all()
+    assert motion.transient_bytes.min() >= 0
+    assert motion.pixel_owner.ravel().tolist() == case.placement.pixel_pes.tolist()
+
+
+@given(case=cases())
+@many
+def test_hops_of_rays_are_those_of_the_messages_that_carried_them(case: Case) -> None:
+    # unmerged, an object is fetched for one ray; else for as many as its receipt makes ready
+    case = with_policy(case, merge_requests=False)
+    result, motion = seen(case, log=True)
+    assert result.log is not None
+    links = 0
+    for row in result.log[(result.log["event"] == RECEIVE)]:
+        far = hops_from(case.machine.shape, int(row["other"]))[int(row["pe"])]
+        links += far * int(row["rays"]) if row["kind"] == RAYS else 0
+        links += 2 * far if row["kind"] == OBJECT else 0
+    assert int(motion.pixel_hops.sum()) == links
+    assert (result.log["number"][result.log["event"] == SEND] != NONE).sum() == result.messages
+
+
+def test_bins_that_begin_wide_are_the_same_as_joined_ones() -> None:
+    for seed in range(20):
+        case = random_case(seed)
+        narrow, wide = seen(case)[1], seen(case, least_ps=seen(case)[0].makespan_ps)[1]
+        assert wide.makespan_ps == narrow.makespan_ps
+        if wide.bin_ps == narrow.bin_ps:
+            assert (wide.compute_ps == narrow.compute_ps).all()
+            assert (wide.batches == narrow.batches).all()
+        assert wide.compute_ps.sum() == narrow.compute_ps.sum()
+
+
+def test_one_ray_that_fetches_one_object() -> None:
+    # PE 0 and 2 of a ring of 4: 2 hops for the request, 2 for the object
+    workload = workload_of(1, [[0, 1]], object_bytes=(40, 50))
+    machine = Machine(**MACHINE)
+    placement = placement_of((0, 2), [0], 4)
+    case = Case(workload, machine, placement, PolicyParameters("object"))
+    result, motion = seen(case)
+    assert motion.pixel_hops.tolist() == [[4]]
+    assert motion.messages[0, 2] == motion.messages[2, 0] == 1
+    assert (motion.bytes[0, 2], motion.bytes[2, 0]) == (8 + 4, 50 + 4)
+    # ties go towards +: 0 -> 1 -> 2 and 2 -> 3 -> 0
+    assert motion.link_bytes[:, 0].tolist() == [12, 12, 54, 54]
+    assert motion.link_bytes[:, 1:].sum() == 0
+    assert motion.hops.tolist() == [0, 0, 2]
+    sizes = {k: np.flatnonzero(motion.sizes[i]).tolist() for i, k in enumerate(MESSAGE_KINDS)}
+    assert sizes == {"request": [4], "object": [6], "rays": [], "load": []}
+    assert motion.transient_bytes.tolist() == [50, 0, 0, 0]
+    assert motion.resident_bytes.tolist() == [40, 0, 50, 0]
+    assert motion.pixel_cost_ps.tolist() == [[2 * 1000 + 500]]
+    assert motion.marks_ps[100] == result.makespan_ps
+
+
+MACHINE: dict[str, Any] = {
+    "name": "by hand", "shape": (4, 1, 1), "send_startup_ps": 10, "receive_startup_ps": 20,
+    "probe_ps": 1, "header_bytes": 4, "request_bytes": 8, "ray_bytes": 10, "latency_ps": 100,
+    "hop_latency_ps": 30, "link_bytes_per_s": 10**12, "injection_bytes_per_s": 0,
+    "ray_ps": 500, "quantum": 4, "test": TestCost(1000, 154, 1250, 7),
+    "pack": (CopyCost(2), CopyCost(3), CopyCost(4), CopyCost(5)),
+    "unpack": (CopyCost(6), CopyCost(7), CopyCost(8), CopyCost(9)),
+}  # fmt: skip
+
+
+def test_marks_are_the_ends_of_the_bins_where_shares_are_reached() -> None:
+    finished, edges = np.array([0, 94, 1, 3, 1, 1]), np.array([0, 10, 20, 30, 40, 50, 55])
+    assert marks_of(finished, edges) == {95: 30, 99: 50, 100: 55}
+
+
+def test_routes_are_shortest_and_go_along_x_then_y_then_z() -> None:
+    steps = [(1, 0), (-1, 0), (1, 1), (-1, 1), (1, 2), (-1, 2)]
+    for shape in ((4, 3, 2), (5, 2, 2), (1, 1, 1), (2, 1, 1), (6, 1, 3)):
+        nb = shape[0] * shape[1] * shape[2]
+        strides = (1, shape[0], shape[0] * shape[1])
+        links = np.zeros(nb, np.int64)
+        for source in range(nb):
+            far = hops_from(shape, source)
+            for destination in range(nb):
+                n = route(shape, source, destination, links)
+                assert n == far[destination]
+                here, axes = source, []
+                for link in links[:n].tolist():
+                    assert link // 6 == here
+                    way, axis = steps[link % 6]
+                    size, stride = shape[axis], strides[axis]
+                    at = here // stride % size
+                    there = here + ((at + way) % size - at) * stride
+                    assert there in neighbours(shape, here)
+                    assert way > 0 or size > 2  # a ring of 2 uses its + link only
+                    here, axes = there, [*axes, axis]
+                assert here == destination
+                assert axes == sorted(axes)

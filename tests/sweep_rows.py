@@ -1,0 +1,71 @@
+"""Rows of a sweep that nobody simulated, for tests of what is made of rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from simmpp.sweeps.columns import NUMBERS, result_columns
+from simmpp.sweeps.rows import in_order
+from simmpp.sweeps.sweep import RESULTS
+from simmpp.sweeps.tables import Row, write_csv
+
+SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
+"""Of a policy; others are as fast as object dataflow."""
+
+
+def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
+    """A row whose numbers differ from those of others, by policy, x and seed."""
+    x = cells.get("fraction", 0.5)
+    hurry = SPEED.get(policy, 1.0) * (1.5 - (x or 0.1)) * (1 + seed / 50)
+    return {
+        "scene": "mountain:4",
+        "processors": 8,
+        "fraction": x,
+        "effective_fraction": 1.0 if policy == "replicated" else x or 0.1,
+        "policy": policy,
+        "seed": seed,
+        "method": "simulate",
+        "engine": "compiled",
+        **dict.fromkeys(NUMBERS, 7),
+        "makespan_ps": int(10**12 / hurry),
+        "messages": 1952 + seed,
+        "request_messages": 1000 + seed,
+        "object_messages": 900,
+        "ray_messages": 50,
+        "load_messages": 2,
+        "rays": 2**60 + seed,
+        "compute_ps": 10**12,
+        "communication_ps": 10**11 * (seed + 1),
+        "waiting_ps": 3 * 10**11,
+        "error": "",
+    } | cells
+
+
+def failed(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
+    """A row with an error in place of numbers."""
+    made = row(policy, seed, **cells)
+    return made | dict.fromkeys((*NUMBERS, "effective_fraction"), "") | {"error": "took too long"}
+
+
+def sweep(
+    policies: Sequence[str] = ("object", "ray", "concurrent", "replicated"),
+    seeds: int = 3,
+    **axes: Sequence[Any],
+) -> list[Row]:
+    """Rows of all combinations of the axes."""
+    return [
+        row(policy, seed, **dict(zip(axes, values, strict=True)))
+        for values in product(*axes.values())
+        for policy in policies
+        for seed in range(seeds)
+    ]
+
+
+def written(folder: Path, rows: Iterable[Row], further: Sequence[str] = ()) -> Path:
+    """The folder, with the rows as results.csv."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(in_order(rows, further), result_columns(further), folder / RESULTS)
+    return folder

@@ -1,0 +1,209 @@
+"""The data behind every figure of a report are those of the rows."""
+
+from __future__ import annotations
+
+import html
+import re
+from statistics import fmean
+from typing import Any
+
+import plotly.graph_objects as go
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sweep_rows import failed, row, sweep
+
+from simmpp.report.bars import Bars
+from simmpp.report.curves import Panel
+from simmpp.report.page.arrangement import abscissas, arrange
+from simmpp.report.page.bar_figures import bar_figures
+from simmpp.report.page.figure import Figure
+from simmpp.report.page.interactive import drawn
+from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
+from simmpp.report.page.profit_figures import PROFITS, Shown, profit_figures
+from simmpp.sweeps.tables import Row
+
+NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
+VALUES: dict[str, Any] = {
+    "scene": NAMES,
+    "processors": st.integers(1, 4096),
+    "fraction": st.one_of(st.just(""), st.floats(0.001, 1)),
+    "memory.transient": st.integers(0, 5),
+    "point": st.one_of(NAMES, st.integers(0, 3)),
+}
+
+
+@st.composite
+def sweeps(draw: st.DrawFn) -> list[Row]:
+    """Rows of some sweep: any axes, some points failed or missing."""
+    axes = {
+        name: draw(st.lists(of, min_size=1, max_size=3, unique=True)) for name, of in VALUES.items()
+    }
+    policies = draw(
+        st.lists(st.sampled_from(["ray", "concurrent", "replicated", "<b>"]), unique=True)
+    )
+    rows = sweep(["object", *policies], draw(st.integers(1, 2)), **axes)
+    rows = [r for r in rows if draw(st.integers(0, 3)) or r["policy"] == "object"][:60]
+    return [failed(**keys(r)) if draw(st.integers(0, 9)) == 0 else r for r in rows]
+
+
+def keys(made: Row) -> dict[str, Any]:
+    return {name: made[name] for name in (*VALUES, "policy", "seed")}
+
+
+few = settings(max_examples=30)
+FURTHER = ("memory.transient", "point")
+
+
+def panels(figures: list[Figure]) -> list[Any]:
+    return [panel for figure in figures for panels in figure.plates.values() for panel in panels]
+
+
+def figures_of(points: Points) -> list[Figure]:
+    return [*profit_figures(Shown(points.profits, points.axes)), *bar_figures(points)]
+
+
+@few
+@given(rows=sweeps())
+def test_curves_show_each_profit_of_any_sweep_once(rows: list[Row]) -> None:
+    points = points_of(rows, FURTHER)
+    found = list(profit_figures(Shown(points.profits, points.axes)))
+    for figure in found:
+        measure = next(
+            m
+            for m in (*PROFITS, "speedup", "efficiency")
+            if figure.stem.startswith(m.replace("_", "-"))
+        )
+        shown = [
+            (curve.rows[x], spread.mean)
+            for panel in panels([figure])
+            for curve in panel.curves
+            for x, spread in curve.points.items()
+        ]
+        expected = [(n, row[measure]) for n, row in enumerate(points.profits) if row[measure] != ""]
+        assert sorted(shown) == expected
+
+
+@few
+@given(rows=sweeps())
+def test_bars_are_the_accounts_and_messages_of_the_rows(rows: list[Row]) -> None:
+    points = points_of(rows, FURTHER)
+    accounts, messages = bar_figures(points)
+    for panel in panels([accounts]):
+        for bar, number in enumerate(panel.rows):
+            sums = {n: sum(r[c] for r in points.runs[number]) for n, c in ACCOUNTS.items()}
+            for name, total in sums.items():
+                expected = 100 * total / sum(sums.values())
+                assert panel.parts[name][bar] == pytest.approx(expected)
+            assert sum(each[bar] for each in panel.parts.values()) == pytest.approx(100)
+    for panel in panels([messages]):
+        for bar, number in enumerate(panel.rows):
+            for name, column in KINDS.items():
+                assert panel.parts[name][bar] == fmean(r[column] for r in points.runs[number])
+    for figure in (accounts, messages):
+        shown = sorted(number for panel in panels([figure]) for number in panel.rows)
+        assert shown == [n for n, runs in enumerate(points.runs) if runs]
+
+
+@few
+@given(rows=sweeps())
+def test_plotly_takes_every_figure(rows: list[Row]) -> None:
+    for panel in panels(figures_of(points_of(rows, FURTHER))):
+        made = drawn(panel)
+        go.Figure({"data": made["data"], "layout": made["layout"]})  # refuses what it does not know
+        assert "<script" not in str(made["data"]) + str(made["layout"])
+
+
+@few
+@given(rows=sweeps())
+def test_every_plate_has_files_of_its_own(rows: list[Row]) -> None:
+    stems = [s for figure in figures_of(points_of(rows, FURTHER)) for s in figure.files.values()]
+    assert len(set(stems)) == len(stems)
+    assert all(re.fullmatch("[a-z0-9][a-z0-9.-]{,120}", stem) for stem in stems)
+
+
+def axes_of(rows: list[Row]) -> dict[str, list[object]]:
+    return points_of(rows, FURTHER).axes
+
+
+def with_further(rows: list[Row]) -> list[Row]:
+    return [{"memory.transient": 0, "point": "p"} | r for r in rows]
+
+
+def test_numbers_run_along_before_texts_and_the_axis_with_most_values_first() -> None:
+    rows = with_further(sweep(scene=list("abcde"), processors=[1, 2, 4], fraction=[0.1, 0.5, 1.0]))
+    assert abscissas(axes_of(rows)) == ["fraction", "processors"]
+    assert abscissas(axes_of(with_further(sweep(scene=list("abc"))))) == ["scene"]
+    assert abscissas(axes_of(with_further(sweep()))) == ["policy"]
+
+
+def test_an_axis_that_follows_from_the_abscissa_splits_no_curve() -> None:
+    rows = with_further(
+        [row(p, processors=n, point=f"p{n}") for n in (8, 64) for p in ("object", "ray")]
+    )
+    points = points_of(rows, FURTHER)
+    found = arrange(points.profits, points.axes, "processors")
+    assert (found.facet, found.chosen) == (None, ())
+
+
+def test_an_axis_with_many_values_is_chosen_from() -> None:
+    rows = with_further(
+        [
+            row(p, fraction=x, scene=s, **{"memory.transient": n})
+            for n in range(13)
+            for x in (n / 100 for n in range(1, 20))
+            for s in "ab"
+            for p in ("object",)
+        ]
+    )
+    points = points_of(rows, FURTHER)
+    found = arrange(points.profits, points.axes, "fraction")
+    assert (found.facet, found.chosen) == ("scene", ("memory.transient",))
+
+
+def test_policies_have_the_same_colour_everywhere() -> None:
+    rows = with_further(sweep(["object", "ray", "z", "a"], fraction=[0.1, 1.0]))
+    rows = [r for r in rows if r["policy"] != "ray" or r["fraction"] == 1.0]
+    styles = {
+        (curve.label, curve.style)
+        for panel in panels(figures_of(points_of(rows, FURTHER)))
+        if isinstance(panel, Panel)
+        for curve in panel.curves
+    }
+    assert styles == {("object dataflow", 0), ("ray dataflow", 1), ("a", 4), ("z", 5)}
+
+
+def test_bars_of_policies_come_in_the_order_of_their_colours() -> None:
+    points = points_of(sweep(fraction=[0.1, 1.0]), ())
+    (accounts, _) = bar_figures(points)
+    (plate,) = accounts.plates.values()
+    assert [panel.title for panel in plate if isinstance(panel, Bars)] == [
+        "object dataflow",
+        "ray dataflow",
+        "concurrent dataflow",
+        "replicated scene",
+    ]
+
+
+def test_plotly_reads_html_so_labels_are_escaped() -> None:
+    hostile = "<b>\"eager\"</b> & 'lazy'"
+    points = points_of(
+        with_further([row(p, fraction=x) for p in ("object", hostile) for x in (0.1, 1.0)]), FURTHER
+    )
+    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    assert [trace["name"] for trace in drawn(panel)["data"]] == [
+        "object dataflow",
+        html.escape(hostile),
+    ]
+    named = with_further([row(point=hostile), row(point="plain")])
+    points = points_of(named, FURTHER)
+    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    assert html.escape(hostile) in drawn(panel)["layout"]["xaxis"]["ticktext"]
+
+
+def test_values_that_look_alike_have_panels_of_their_own() -> None:
+    rows = with_further([row(processors=n, fraction=x) for n in (1, 2, 3) for x in (0.1, 0.10001)])
+    points = points_of(rows, FURTHER)
+    figure = next(profit_figures(Shown(points.profits, points.axes)))
+    (plate,) = figure.plates.values()
+    assert [panel.title for panel in plate] == ["x = 10 %", "x = 10 % (2)"]

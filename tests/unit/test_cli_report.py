@@ -1,0 +1,65 @@
+"""The commands report and compare: what they write, print and refuse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from sweep_rows import failed, row, sweep, written
+
+from simmpp.cli import main
+
+
+def run(*arguments: object) -> tuple[int, str]:
+    done = CliRunner().invoke(main, [str(each) for each in arguments])
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.output
+    return done.exit_code, done.output
+
+
+def test_report_writes_the_page_and_its_figures(tmp_path: Path) -> None:
+    folder = written(tmp_path, [row(), row("ray"), failed("late")])
+    code, told = run("report", folder)
+    assert code == 0
+    assert "report.html: 3 rows, 4." in told
+    assert "figures: 4 figures, as PNG and SVG" in told
+    stems = {path.stem for path in (folder / "figures").iterdir()}
+    assert stems == {"time-profit", "message-profit", "accounts-by-policy", "messages-by-kind"}
+    assert len(list((folder / "figures").iterdir())) == 8
+
+
+def test_live_ends_at_once_where_no_sweep_works(tmp_path: Path) -> None:
+    code, told = run("report", "--live", written(tmp_path, [row(), row("ray")]))
+    assert code == 0
+    assert "2 of 2 rows" in told
+    assert 'class="live"' not in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("options", [(), ("--live",)])
+def test_report_refuses_a_folder_without_rows(tmp_path: Path, options: tuple[str, ...]) -> None:
+    code, told = run("report", *options, tmp_path)
+    assert code == 2
+    assert told.splitlines()[-1].startswith(f"simmpp: error: DIR: value '{tmp_path}': there are no")
+
+
+def test_compare_exits_with_0_whatever_moved(tmp_path: Path) -> None:
+    before = written(tmp_path / "before", sweep(fraction=[0.1, 1.0]))
+    slower = [r | {"makespan_ps": 2 * r["makespan_ps"]} for r in sweep(fraction=[0.1, 0.5])]
+    after = written(tmp_path / "after", slower)
+    page = tmp_path / "page.html"
+    code, told = run("compare", before, after, "--out", page)
+    assert code == 0
+    verdict = "4 points in both, 4 only before, 4 only after; 4 moved, 4 beyond the 95 % interval."
+    assert told.splitlines()[-1] == f"compare: {verdict}"
+    assert "x = 10 %, ray dataflow" in told
+    assert "+100 %" in told
+    assert "only after: x = 50 %, object dataflow" in told
+    assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
+
+
+def test_compare_says_which_folder_it_can_not_read(tmp_path: Path) -> None:
+    folder = written(tmp_path / "a", [row()])
+    assert run("compare", folder, tmp_path / "b")[1].startswith("simmpp: error: AFTER: value")
+    assert run("compare", tmp_path / "b", folder)[0] == 2
+    code, told = run("compare", folder, folder, "--out", tmp_path / "page.txt")
+    assert (code, "expected a file .html" in told) == (2, True)
