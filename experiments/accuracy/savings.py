@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from simmpp.sweeps.intervals import CONFIDENCE, quantile
+from simmpp.sweeps.intervals import quantile
 from simmpp.sweeps.profits import MEASURES
 from simmpp.sweeps.seeding import CORRECTED, FEWEST
 
@@ -28,8 +28,7 @@ Row = dict[str, str]
 def deviation(row: Row, measure: str) -> float:
     """Relative deviation of a profit over seeds."""
     seeds = int(row["reference_seeds"]) + int(row["seeds"])
-    half_width = float(row[f"{measure}_resolution"])
-    return half_width * math.sqrt(seeds) / quantile(seeds - 1, CONFIDENCE)
+    return float(row[f"{measure}_resolution"]) * math.sqrt(seeds)
 
 
 def seeds_for(relative_deviation: float) -> int:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from simmpp.report.rungs import Rung
 
 RUNS_FAILED = 1
+LARGE = 10
+"""Error from which on it is told as a factor."""
 
 
 @click.command("bench")
@@ -46,7 +48,7 @@ def bench_command(
     Each method (the analytical models, simulation) is tried at every point, simulation with 1, 2,
     4, ... seeds. Errors are against the mean of the other simulated seeds; times are the
     processor's, tracing apart. Writes bench.csv, bench.png and bench.svg. The same command
-    continues what was interrupted. Exits with 1 if a run failed.
+    continues what was interrupted, or adds seeds. Exits with 1 if a run failed.
     """
     from simmpp.commands.files import folder
     from simmpp.commands.sweeping import progress_of_sweep
@@ -80,10 +82,16 @@ def _print(rungs: Sequence[Rung]) -> None:
             "seeds": rung.seeds,
             "s per point": f"{rung.seconds:.4f}",
             **{
-                name.replace("_", " "): f"{rung.error[name]:.1%} (at worst {rung.worst[name]:.1%})"
+                name.replace("_", " "): f"{_share(rung.error[name])} ({_share(rung.worst[name])})"
                 for name in rung.error
             },
         }
         for rung in rungs
     ]
     output().print(table(shown))
+    click.echo("\nrelative errors: root mean square over points and policies (and the worst)")
+
+
+def _share(error: float) -> str:
+    """A large one as a factor, which says more."""
+    return f"{error:.1%}" if error < LARGE else f"x {1 + error:.3g}"

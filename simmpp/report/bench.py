@@ -27,6 +27,7 @@ from simmpp.sweeps.methods import METHODS, SIMULATE
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.profits import SIMULATION
+from simmpp.sweeps.provenance import result_versions
 from simmpp.sweeps.seeding import seeds_in_order
 from simmpp.sweeps.settings import long_policies
 from simmpp.sweeps.sweep import Watcher, run_pending
@@ -54,15 +55,15 @@ def bench(
 ) -> Bench:
     """Run every method that isn't run yet in the folder ``out``; write ``bench.csv`` and its plot.
 
-    ``seeds`` is the number that is simulated at full fidelity.
-    Raises ConfigError if the folder holds another bench's results.
+    ``seeds`` is the number that is simulated at full fidelity; more of them add to what is there.
+    Raises ConfigError if the folder holds results of other versions.
     """
     refuse_unfit(config)
     plans = {method: plan(_tried(config, method, seeds)) for method in METHODS}
     full = plans[SIMULATE]
     together = Plan(full.config, tuple(chain(*(each.points for each in plans.values()))), ())
     out.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(out, together.identity)) as journal:
+    with closing(Journal(out, {"versions": result_versions()})) as journal:
         _time_tracing(full, journal, watcher or Watcher())
         with closing(crew_for(workers, None)) as crew:
             run_pending(Frontier(together, journal), journal, crew, None, watcher or Watcher())

@@ -33,6 +33,8 @@ class Curve:
     """Not measured: drawn thin and grey."""
     said: dict[float, str] = field(default_factory=dict)
     """What is written beside points, by abscissa."""
+    floor: float = 0
+    """Below this nothing can be told apart; drawn as a band under the curve."""
     style: int | None = None
     """Number of its colour and marker; its place among the panel's curves if not given."""
     rows: dict[float, int] = field(default_factory=dict)

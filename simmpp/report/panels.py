@@ -28,6 +28,9 @@ STYLES: tuple[dict[str, Any], ...] = (
 """Colours of Okabe and Ito (2008), which all readers tell apart; markers and lines differ too."""
 GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
 STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
+FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
+FADE = 1.35
+"""A band below a level is drawn down to that part of it: others lie deeper."""
 PARTS: tuple[dict[str, Any], ...] = (
     {"facecolor": "#1f5f8b"},
     {"facecolor": "#e8963a", "hatch": "\\\\\\"},
@@ -150,6 +153,8 @@ def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -
     if panel.has_bands:
         axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
     axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
+    if curve.floor:
+        axes.fill_between(xs, curve.floor / FADE, curve.floor, color=style["color"], **FLOOR)
     for x, text in curve.said.items():
         place = (x, curve.points[x].mean)
         axes.annotate(text, place, (3, 3), textcoords="offset points", fontsize=6.5)

@@ -2,18 +2,17 @@
 
 A rung is a method with a number of seeds: what it says is the mean over these. Its error is taken
 against the mean of all other seeds simulated at full fidelity, which it has no part in, and over as
-many disjoint groups of seeds as there are (root mean square). Below the half-width of the interval
-of that mean, the resolution, an error can't be told from that of the reference.
+many disjoint groups of seeds as there are (root mean square). Below the standard error of that
+mean, the resolution, an error can't be told from that of the reference.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from statistics import fmean
+from statistics import fmean, stdev
 from typing import NamedTuple
 
-from simmpp.sweeps.intervals import CONFIDENCE, half_width
 from simmpp.sweeps.methods import METHODS, SIMULATE
 from simmpp.sweeps.point import REFERENCE
 from simmpp.sweeps.profits import MEASURES, profits_of
@@ -125,11 +124,11 @@ def _relative(estimate: float, reference: float) -> float:
 
 
 def _resolution(values: Sequence[float]) -> float | str:
-    """Half of the relative 95 % interval of the mean."""
+    """The relative standard error of the mean."""
     if len(values) < 2 or not all(map(math.isfinite, values)):
         return ""
     mean = fmean(values)
-    return half_width(values, CONFIDENCE) / mean if mean else 0.0
+    return stdev(values) / math.sqrt(len(values)) / mean if mean else 0.0
 
 
 class Rung(NamedTuple):

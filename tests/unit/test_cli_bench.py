@@ -120,8 +120,12 @@ def test_what_it_sets_itself_is_refused(setting: str, problem: str) -> None:
     assert problem in done.stderr
 
 
-def test_other_numbers_of_seeds_are_another_bench() -> None:
+def test_more_seeds_add_to_what_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[str] = []
+    real = worker._simulated
+    monkeypatch.setattr(worker, "_simulated", lambda task, t: ran.append(task.key) or real(task, t))
     assert simmpp("--seeds", "4").exit_code == 0
-    done = simmpp("--seeds", "5")
-    assert done.exit_code == 2
-    assert "holds results of another sweep (config.seeds" in done.stderr
+    few = len(ran)
+    assert simmpp("--seeds", "5").exit_code == 0
+    assert len(ran) - few == 2 * 3
+    assert {row["reference_seeds"] for row in rows()} == {"4"}

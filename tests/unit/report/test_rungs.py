@@ -48,8 +48,8 @@ def test_each_seed_is_judged_by_the_others() -> None:
     assert one["time_profit_error"] == pytest.approx(math.sqrt(sum(e * e for e in errors) / 4))
     assert one["messages_error"] == one["message_profit_error"] == 0
     assert (one["groups"], one["reference_seeds"], one["trace_s"], one[CPU]) == (4, 3, 2.5, 0.5)
-    half = 3.18244630528 * np.std(profits, ddof=1) / 2  # t(0.975, 3)
-    assert one["time_profit_resolution"] == pytest.approx(half / np.mean(profits))
+    error = np.std(profits, ddof=1) / 2
+    assert one["time_profit_resolution"] == pytest.approx(error / np.mean(profits))
 
 
 def test_groups_are_disjoint_and_take_their_time() -> None:
