@@ -13,7 +13,7 @@ scenes and small pictures, chosen (by the deviation over 20 seeds) so that the r
 and 64 seeds. *full*: pictures of figure 4.
 
 The rule was developed on artificial distributions and on mountain:3, tetra:3, rings:2 and balls:2
-with 8 and 32 PEs. None of these scenes, sizes and numbers of PEs is here.
+with 8 and 32 PEs. None of these sizes and numbers of PEs is here; mountain and tetra are, larger.
 """
 
 from __future__ import annotations
