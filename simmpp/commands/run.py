@@ -148,11 +148,11 @@ def _check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
 class Recorder(Protocol):
     """Watches the runs of a point, one after the other."""
 
-    needs_hops: bool
-    """Whether links are to be counted for each ray."""
+    needs_counters: bool
+    """Whether the run is to record its counters, and the links crossed for each ray."""
 
-    def begin(self, policy: PolicyParameters) -> Sink:
-        """What gets the event log of a policy's run."""
+    def begin(self, policy: PolicyParameters) -> Sink | None:
+        """What gets the event log of a policy's run, if anything."""
 
     def end(self, run: PolicyRun) -> None:
         """The run that was begun last is over."""
@@ -202,20 +202,21 @@ def _simulate(
                 tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
             bars.update(tasks[title], completed=n_rays - rays_left)
 
-        def log_of(parameters: PolicyParameters) -> Sink:
-            sinks = [recorder.begin(parameters) for recorder in recorders]
+        def log_of(parameters: PolicyParameters) -> Sink | None:
+            begun = [recorder.begin(parameters) for recorder in recorders]
+            sinks = [sink for sink in begun if sink is not None]
 
             def hand_on(rows: NDArray[np.void]) -> None:
                 for sink in sinks:
                     sink(rows)
 
-            return hand_on
+            return hand_on if sinks else None
 
         each = run_point(
             point,
             record_tests=record_tests,
-            record_hops=any(recorder.needs_hops for recorder in recorders),
-            log_of=log_of if recorders else None,
+            record_counters=any(recorder.needs_counters for recorder in recorders),
+            log_of=log_of,
             progress=progress,
         )
         for run in each:

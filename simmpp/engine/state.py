@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
+from simmpp.engine.bins import BINS, SIZES
+from simmpp.engine.counters import Counters, end_counting, first_width
 from simmpp.engine.layout import (
     ARRAYS,
     COPY,
@@ -26,6 +28,7 @@ from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row
 from simmpp.engine.tables import USED
 from simmpp.machine.links import LINKS, ROWS_PER_PE
 from simmpp.machine.machine import Machine
+from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
@@ -93,6 +96,23 @@ class State:
             self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
             hand_on_last(self._logged(), end_ps, self.log)
 
+    def counters(self) -> Counters:
+        """What was counted; the run must be over."""
+        end_counting(self.runs)
+        n, at = len(self.pes), self.arrays
+        moments, traffic = at["moments"], at["traffic"].reshape(n, n)
+        return Counters(
+            bin_ps=1 << self["bin_width"],
+            compute_ps=at["compute_bins"].reshape(n, BINS),
+            communication_ps=at["communication_bins"].reshape(n, BINS),
+            finished=moments["finished"],
+            batches=np.array([moments[name] for name in ("batches", "rays", "largest")]),
+            messages=traffic["messages"],
+            bytes=traffic["bytes"],
+            sizes=at["sizes"].reshape(-1, SIZES),
+            load_ps=at["slices"]["load_ps"],
+        )
+
     def _logged(self) -> NDArray[np.void]:
         return self.arrays["log"][: self["n_logged"]]
 
@@ -112,6 +132,7 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
+    record_counters: bool = False,
     record_hops: bool = False,
     log: Sink | None = None,
 ) -> State:
@@ -119,17 +140,22 @@ def new_state(
     everything = POLICIES[parameters.name].all_resident
     n_recorded = workload.n_tests if record_tests else 0
     arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
+    arrays |= _counting_arrays(placement.processors if record_counters else 0)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": record_tests,
+        "record_counters": record_counters,
         "record_hops": record_hops,
+        "bin_width": first_width(workload.n_rays * machine.ray_ps // placement.processors),
         "logs": log is not None,
     }
     state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
+    if record_counters:
+        state.arrays["slices"]["load"] = state.pes["load"]
     return state
 
 
@@ -146,6 +172,18 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "copy_costs": np.array(costs, COPY),
         "free_ps": np.zeros(n_links, np.int64),
     }
+
+
+def _counting_arrays(nb: int) -> Arrays:
+    sizes = {
+        "compute_bins": nb * BINS,
+        "communication_bins": nb * BINS,
+        "moments": BINS,
+        "traffic": nb * nb,
+        "sizes": len(MESSAGE_KINDS) * SIZES,
+        "slices": nb,
+    }
+    return {name: np.zeros(size if nb else 0, ARRAYS[name]) for name, size in sizes.items()}
 
 
 def _own_arrays(

@@ -9,6 +9,7 @@ from builders import Case, cases, placement_of, random_case, with_policy, worklo
 from hypothesis import given, settings
 from oracles.costs import hops_from, neighbours
 
+from simmpp.engine.bins import BINS
 from simmpp.engine.layout import COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
@@ -16,24 +17,20 @@ from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS
 from simmpp.machine.torus import route
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.motion.counters import BINS, MotionRecorder
 from simmpp.report.motion.motion import Motion, marks_of, motion_of
 from simmpp.sweeps.point import Point, PolicyRun
 
 many = settings(max_examples=40, deadline=None, derandomize=True)
 
 
-def seen(case: Case, log: bool = False, least_ps: int = 0) -> tuple[Result, Motion]:
+def seen(case: Case, log: bool = False) -> tuple[Result, Motion]:
     """A run and the data of its pictures; and its event log, from another run."""
-    nb = case.machine.processors
-    load = np.bincount(case.placement.pixel_pes, minlength=nb).astype(np.int64)
-    recorder = MotionRecorder(case.machine, load, least_ps)
     point = Point(cast(Any, None), case.workload, case.machine, case.placement, seed=0)
     options: dict[str, Any] = {"ready_order": case.ready_order, "record_hops": True}
+    options["record_counters"] = True
     arguments = (case.workload, case.machine, case.placement, case.policy)
-    result = simulate(*arguments, **options, log=recorder)
-    counters = recorder.end(result.makespan_ps)
-    motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0), counters)
+    result = simulate(*arguments, **options)
+    motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0))
     return simulate(*arguments, **options, log=True) if log else result, motion
 
 
