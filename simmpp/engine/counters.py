@@ -147,9 +147,10 @@ def _widen(s: Run, time_ps: int) -> None:
 
 @njit
 def _join_pairs(bins: Ints, first: int) -> None:
-    for i in range(BINS):
-        pair = first + 2 * i
-        bins[first + i] = bins[pair] + bins[pair + 1] if 2 * i < BINS else 0
+    half, end = first + BINS // 2, first + BINS
+    for i in range(BINS // 2):
+        bins[first + i] = bins[first + 2 * i] + bins[first + 2 * i + 1]
+    bins[half:end] = 0
 
 
 @njit

@@ -29,6 +29,7 @@ from simmpp.engine.tables import USED
 from simmpp.machine.links import LINKS, ROWS_PER_PE
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
@@ -148,7 +149,7 @@ def new_state(
         "record_tests": record_tests,
         "record_counters": record_counters,
         "record_hops": record_hops,
-        "bin_width": first_width(workload.n_rays * machine.ray_ps // placement.processors),
+        "bin_width": first_width(_least_ps(workload, machine)),
         "logs": log is not None,
     }
     state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
@@ -157,6 +158,13 @@ def new_state(
     if record_counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
+
+
+def _least_ps(workload: Workload, machine: Machine) -> int:
+    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
+    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
+    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
+    return total_ps // machine.processors
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
