@@ -134,7 +134,7 @@ def _conclude(
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
         log=log,
         counters=state.counters() if state["record_counters"] else None,
-        ray_hops=state.arrays["rays"]["hops"].copy() if state["record_hops"] else None,
+        ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )
