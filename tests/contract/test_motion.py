@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any, cast
 
 import numpy as np
-from builders import Case, cases, placement_of, with_policy, workload_of
+import pytest
+from builders import Case, cases, placement_of, random_case, with_policy, workload_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -133,6 +134,19 @@ def test_hops_of_rays_are_those_of_the_messages_that_carried_them(case: Case) ->
 @given(case=cases(), engine=st.sampled_from(list(ENGINES)))
 @many
 def test_counters_are_those_of_the_event_log(case: Case, engine: str) -> None:
+    counted_run(case, engine)
+
+
+@pytest.mark.parametrize("engine", list(ENGINES))
+@pytest.mark.parametrize("seed", [227, 363])
+def test_loads_that_never_depart_are_not_counted(seed: int, engine: str) -> None:
+    case = with_policy(random_case(seed), refresh_ps=0, load_info="piggyback")
+    log = counted_run(case, engine)
+    assert ((log["event"] == SEND) & (log["number"] == NONE)).any()
+
+
+def counted_run(case: Case, engine: str) -> NDArray[np.void]:
+    """The event log of a run, which says the same as its counters."""
     options: dict[str, Any] = {"ready_order": case.ready_order, "engine": engine}
     arguments = (case.workload, case.machine, case.placement, case.policy)
     result = simulate(*arguments, **options, log=True, record_counters=True)
@@ -142,6 +156,7 @@ def test_counters_are_those_of_the_event_log(case: Case, engine: str) -> None:
     for name, expected in counters_of(case, result.log, result.makespan_ps).items():
         assert np.array_equal(getattr(counted, name), expected), name
         assert np.array_equal(getattr(alone, name), expected), name
+    return result.log
 
 
 def counters_of(case: Case, log: NDArray[np.void], makespan_ps: int) -> dict[str, Any]:
