@@ -42,11 +42,11 @@ def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
 class Recorder(Protocol):
     """Watches the runs of a point, one after the other."""
 
-    needs_hops: bool
-    """Whether links are to be counted for each ray."""
+    needs_counters: bool
+    """Whether the run is to record its counters, and the links crossed for each ray."""
 
-    def begin(self, policy: PolicyParameters) -> Sink:
-        """What gets the event log of a policy's run."""
+    def begin(self, policy: PolicyParameters) -> Sink | None:
+        """What gets the event log of a policy's run, if anything."""
 
     def end(self, run: PolicyRun) -> None:
         """The run that was begun last is over."""
@@ -73,12 +73,13 @@ def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
         yield recorders
 
 
-def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink:
-    """What hands the event log of a policy's run to all of them."""
-    sinks = [recorder.begin(policy) for recorder in recorders]
+def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink | None:
+    """What hands the event log of a policy's run to all who want it."""
+    begun = [recorder.begin(policy) for recorder in recorders]
+    sinks = [sink for sink in begun if sink is not None]
 
     def hand_on(rows: NDArray[np.void]) -> None:
         for sink in sinks:
             sink(rows)
 
-    return hand_on
+    return hand_on if sinks else None

@@ -140,8 +140,8 @@ def _simulate(
         each = run_point(
             point,
             record_tests=record_tests,
-            record_hops=any(recorder.needs_hops for recorder in recorders),
-            log_of=partial(sink_of, recorders) if recorders else None,
+            record_counters=any(recorder.needs_counters for recorder in recorders),
+            log_of=partial(sink_of, recorders),
             progress=progress,
         )
         for run in each:

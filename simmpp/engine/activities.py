@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit_reading as njit
+from simmpp.engine.counters import note_finished, note_load, note_work
 from simmpp.engine.dispatch import dispatch
 from simmpp.engine.fetched import admit_object, touch, unpin
 from simmpp.engine.layout import (
@@ -104,10 +105,14 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         make_ready(s, me, m.first, m.last, m.n)
     if s.logs:
         note_receive(s, me, message, now_ps, clock_ps)
+    if s.record_counters and m.kind == RAYS:
+        note_load(s, me, clock_ps)
     if m.kind == REQUEST:
         payload_bytes = object_bytes(s)[m.object]
         clock_ps = send(s, me, m.source, OBJECT, m.object, NONE, NONE, 0, payload_bytes, clock_ps)
     s.received += 1
+    if s.record_counters:
+        note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     m.kind = NONE
     give_back(messages(s), messages_marks(s), message)
@@ -153,6 +158,10 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             finish_ray(s, me, ray, clock_ps)
     if s.logs:
         note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
+    if s.record_counters:
+        note_work(s, me, now_ps, start_ps, clock_ps)
+        note_load(s, me, clock_ps)
+        note_finished(s, s.rays_done - done, clock_ps)
     pe.compute_ps += clock_ps - start_ps
     pe.communication_ps += s.probe_ps
     return clock_ps

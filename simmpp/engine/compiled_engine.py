@@ -68,8 +68,8 @@ class CompiledRun:
 
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
-        records = self.state["logs"] or self.state["record_tests"]
-        if records or not run_alone(self.state.runs):
+        records = ("logs", "record_tests", "record_counters")
+        if any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
             self._progress(0)

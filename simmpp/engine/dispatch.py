@@ -11,6 +11,7 @@ transfer makes at least one test, and stale loads can herd rays but not bounce t
 from __future__ import annotations
 
 from simmpp.compiled import njit_reading as njit
+from simmpp.engine.counters import note_work
 from simmpp.engine.layout import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.memory import (
     exchanged,
@@ -44,6 +45,8 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
         clock_ps = _ask_for_objects(s, me, nothing_else, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
         clock_ps = _refresh_loads(s, me, clock_ps)
+    if s.record_counters and clock_ps > now_ps:
+        note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     return clock_ps
 

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from simmpp.engine.bins import MOMENT, SLICE, TRAFFIC
+
 Run = Any
 """A RUN record; numba's type, which Python has no name for."""
 Row = Any
@@ -168,6 +170,13 @@ ARRAYS: dict[str, np.dtype[Any]] = {
     "tested_objects": I4,
     "free_ps": I8,  # from when on each link and port is free; empty without contention
     "log": EVENT,
+    # What a PE did in each bin, BINS per PE; this and what follows: empty without record_counters.
+    "compute_bins": I8,
+    "communication_bins": I8,
+    "moments": MOMENT,
+    "traffic": TRAFFIC,  # from PE i to j at nb i + j
+    "sizes": I8,  # SIZES per kind of message
+    "slices": SLICE,
 }
 """Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
 
@@ -208,6 +217,7 @@ PARAMETERS = (
     "record_tests",
     "record_hops",
     "logs",
+    "record_counters",
 )
 COUNTERS = (
     "rays_left",
@@ -219,6 +229,7 @@ COUNTERS = (
     "received",
     "activities",
     "n_logged",
+    "bin_width",  # k: the bins of the counters are 2^k ps wide
 )
 REPORT = (
     "phase",  # of the PE's next instant

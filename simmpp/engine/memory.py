@@ -9,6 +9,7 @@ from numba import carray, types
 from numba.extending import intrinsic
 
 from simmpp.compiled import njit
+from simmpp.engine.bins import MOMENT, SLICE, TRAFFIC
 from simmpp.engine.layout import COPY, EVENT, I1, I4, I8, MESSAGE, PARTNER, PE, RAY, WANT, Run
 from simmpp.engine.tables import Lists, Table
 
@@ -216,6 +217,42 @@ def tested_objects(s: Run) -> Any:
 def free_ps(s: Run) -> Any:
     """(8 nb,) int64, or empty: see ``machine.links``."""
     return carray(_pointer(s.free_ps_at), s.free_ps_n, I8)
+
+
+@njit
+def compute_bins(s: Run) -> Any:
+    """(nb * BINS,) int64, or empty."""
+    return carray(_pointer(s.compute_bins_at), s.compute_bins_n, I8)
+
+
+@njit
+def communication_bins(s: Run) -> Any:
+    """(nb * BINS,) int64, or empty."""
+    return carray(_pointer(s.communication_bins_at), s.communication_bins_n, I8)
+
+
+@njit
+def moments(s: Run) -> Any:
+    """(BINS,) MOMENT, or empty."""
+    return carray(_pointer(s.moments_at), s.moments_n, MOMENT)
+
+
+@njit
+def traffic(s: Run) -> Any:
+    """(nb * nb,) TRAFFIC, or empty."""
+    return carray(_pointer(s.traffic_at), s.traffic_n, TRAFFIC)
+
+
+@njit
+def sizes(s: Run) -> Any:
+    """(4 * SIZES,) int64, or empty."""
+    return carray(_pointer(s.sizes_at), s.sizes_n, I8)
+
+
+@njit
+def slices(s: Run) -> Any:
+    """(nb,) SLICE, or empty."""
+    return carray(_pointer(s.slices_at), s.slices_n, SLICE)
 
 
 @njit

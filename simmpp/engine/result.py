@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.engine.counters import Counters
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 
@@ -47,9 +48,11 @@ class Result:
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     log: NDArray[np.void] | None = None
     """Event log, if asked for (see ``engine.log``)."""
+    counters: Counters | None = None
+    """With record_counters: what happened when, and who sent how much to whom."""
     ray_hops: NDArray[np.int32] | None = None
     """(n,) int32, with record_hops: links crossed for each ray, by itself in a message or by the
-    requests and objects that it waited for."""
+    requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
     tested_rays: NDArray[np.int32] | None = None
     """(tests,) int32, with record_tests: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit_reading as njit
+from simmpp.engine.counters import note_departure
 from simmpp.engine.layout import NONE, PACK, Row, Run
 from simmpp.engine.log import note_send
 from simmpp.engine.memory import (
@@ -74,6 +75,8 @@ def send(
             note_exchange(s, me, partner)
     if s.logs:
         note_send(s, me, row, now_ps)
+    if s.record_counters:
+        note_departure(s, m)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return depart_ps

@@ -43,6 +43,7 @@ def simulate(
     ready_order: str = "depth-first",
     log: bool | Sink = False,
     record_tests: bool = False,
+    record_counters: bool = False,
     record_hops: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
@@ -50,8 +51,8 @@ def simulate(
 
     ``log`` keeps the event log in the result; a function gets its rows, (n,) EVENT, as they become
     final, and nothing is kept. ``record_tests`` keeps the (ray, object) pairs that PEs tested,
-    ``record_hops`` the links that were crossed for each ray.
-    ``progress`` is called now and then with the number of rays left.
+    ``record_counters`` what pictures are made of, ``record_hops`` the links that were crossed for
+    each ray. ``progress`` is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
     are left and nothing is scheduled (a bug, or a policy that starves).
@@ -66,6 +67,7 @@ def simulate(
         policy,
         ready_order=ready_order,
         record_tests=record_tests,
+        record_counters=record_counters,
         record_hops=record_hops,
         log=sink,
     )
@@ -132,7 +134,8 @@ def _conclude(
         events=state["activities"] + arrivals,
         rules_never_fired=_never_fired(POLICIES[policy.name], sent_by_kind),
         log=log,
-        ray_hops=state.arrays["rays"]["hops"].copy() if state["record_hops"] else None,
+        counters=state.counters() if state["record_counters"] else None,
+        ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

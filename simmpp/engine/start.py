@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
+from simmpp.engine.bins import BINS, SIZES
+from simmpp.engine.counters import first_width
 from simmpp.engine.layout import ARRAYS, COPY, LOAD_INFO, NONE, PARAMETERS, PIGGYBACK, Run
 from simmpp.engine.log import LOG_ROWS, Sink
 from simmpp.engine.memory import pes, rays
@@ -13,6 +15,8 @@ from simmpp.engine.residents import Arrays, resident_arrays, resident_bytes, row
 from simmpp.engine.state import State
 from simmpp.machine.links import LINKS, ROWS_PER_PE
 from simmpp.machine.machine import Machine
+from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.work import CLOCK_LIMIT_PS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.table import POLICIES
@@ -27,6 +31,7 @@ def new_state(
     *,
     ready_order: str,
     record_tests: bool,
+    record_counters: bool = False,
     record_hops: bool = False,
     log: Sink | None = None,
 ) -> State:
@@ -34,18 +39,30 @@ def new_state(
     everything = POLICIES[parameters.name].all_resident
     n_recorded = workload.n_tests if record_tests else 0
     arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
+    arrays |= _counting_arrays(placement.processors if record_counters else 0)
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": record_tests,
+        "record_counters": record_counters,
         "record_hops": record_hops,
+        "bin_width": first_width(_least_ps(workload, machine)),
         "logs": log is not None,
     }
     state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
+    if record_counters:
+        state.arrays["slices"]["load"] = state.pes["load"]
     return state
+
+
+def _least_ps(workload: Workload, machine: Machine) -> int:
+    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
+    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
+    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
+    return total_ps // machine.processors
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
@@ -61,6 +78,18 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "copy_costs": np.array(costs, COPY),
         "free_ps": np.zeros(n_links, np.int64),
     }
+
+
+def _counting_arrays(nb: int) -> Arrays:
+    sizes = {
+        "compute_bins": nb * BINS,
+        "communication_bins": nb * BINS,
+        "moments": BINS,
+        "traffic": nb * nb,
+        "sizes": len(MESSAGE_KINDS) * SIZES,
+        "slices": nb,
+    }
+    return {name: np.zeros(size if nb else 0, ARRAYS[name]) for name, size in sizes.items()}
 
 
 def _own_arrays(

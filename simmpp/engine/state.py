@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.engine.bins import BINS, SIZES
+from simmpp.engine.counters import Counters, end_counting
 from simmpp.engine.layout import (
     ARRAYS,
     COUNTERS,
@@ -80,6 +82,23 @@ class State:
             end_ps = self["last_ray_ps"]
             self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
             hand_on_last(self._logged(), end_ps, self.log)
+
+    def counters(self) -> Counters:
+        """What was counted; the run must be over."""
+        end_counting(self.runs)
+        n, at = len(self.pes), self.arrays
+        moments, traffic = at["moments"], at["traffic"].reshape(n, n)
+        return Counters(
+            bin_ps=1 << self["bin_width"],
+            compute_ps=at["compute_bins"].reshape(n, BINS),
+            communication_ps=at["communication_bins"].reshape(n, BINS),
+            finished=moments["finished"],
+            batches=np.array([moments[name] for name in ("batches", "rays", "largest")]),
+            messages=traffic["messages"],
+            bytes=traffic["bytes"],
+            sizes=at["sizes"].reshape(-1, SIZES),
+            load_ps=at["slices"]["load_ps"],
+        )
 
     def _logged(self) -> NDArray[np.void]:
         return self.arrays["log"][: self["n_logged"]]

@@ -94,6 +94,7 @@ class Records(TypedDict):
 
     log: bool | Sink
     record_tests: bool
+    record_counters: bool
     record_hops: bool
 
 
@@ -101,20 +102,22 @@ def run_point(
     point: Point,
     *,
     record_tests: bool = False,
-    record_hops: bool = False,
-    log_of: Callable[[PolicyParameters], Sink] | None = None,
+    record_counters: bool = False,
+    log_of: Callable[[PolicyParameters], Sink | None] = lambda _: None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
     """Simulate the policies one after the other, yielding each as it is finished.
 
-    ``log_of`` gives what gets the event log of a policy's run. ``progress(title, rays left)`` is
+    ``record_counters`` records the links crossed for each ray too. ``log_of`` gives what gets the
+    event log of a policy's run, if anything. ``progress(title, rays left)`` is
     called now and then.
     """
     for parameters, named in policies_of(point.config):
         records: Records = {
-            "log": False if log_of is None else log_of(parameters),
+            "log": log_of(parameters) or False,
             "record_tests": record_tests,
-            "record_hops": record_hops,
+            "record_counters": record_counters,
+            "record_hops": record_counters,
         }
         yield _run(point, parameters, named, records, progress)
 

@@ -5,35 +5,35 @@ from __future__ import annotations
 from typing import Any, cast
 
 import numpy as np
+import pytest
 from builders import Case, cases, placement_of, random_case, with_policy, workload_of
 from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
-from simmpp.engine.layout import COMPUTE, NONE, RECEIVE, SEND
+from simmpp.engine.bins import BINS, SIZES
+from simmpp.engine.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
-from simmpp.engine.simulate import simulate
+from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.links import DIRECTIONS, ROWS_PER_PE, link_towards
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.motion.counters import BINS, MotionRecorder
 from simmpp.report.motion.motion import Motion, marks_of, motion_of
 from simmpp.sweeps.point import Point, PolicyRun
 
 many = settings(max_examples=40, deadline=None, derandomize=True)
 
 
-def seen(case: Case, log: bool = False, least_ps: int = 0) -> tuple[Result, Motion]:
+def seen(case: Case, log: bool = False) -> tuple[Result, Motion]:
     """A run and the data of its pictures; and its event log, from another run."""
-    nb = case.machine.processors
-    load = np.bincount(case.placement.pixel_pes, minlength=nb).astype(np.int64)
-    recorder = MotionRecorder(case.machine, load, least_ps)
     point = Point(cast(Any, None), case.workload, case.machine, case.placement, seed=0)
     options: dict[str, Any] = {"ready_order": case.ready_order, "record_hops": True}
+    options["record_counters"] = True
     arguments = (case.workload, case.machine, case.placement, case.policy)
-    result = simulate(*arguments, **options, log=recorder)
-    counters = recorder.end(result.makespan_ps)
-    motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0), counters)
+    result = simulate(*arguments, **options)
+    motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0))
     return simulate(*arguments, **options, log=True) if log else result, motion
 
 
@@ -131,15 +131,66 @@ def test_hops_of_rays_are_those_of_the_messages_that_carried_them(case: Case) ->
     assert (result.log["number"][result.log["event"] == SEND] != NONE).sum() == result.messages
 
 
-def test_bins_that_begin_wide_are_the_same_as_joined_ones() -> None:
-    for seed in range(20):
-        case = random_case(seed)
-        narrow, wide = seen(case)[1], seen(case, least_ps=seen(case)[0].makespan_ps)[1]
-        assert wide.makespan_ps == narrow.makespan_ps
-        if wide.bin_ps == narrow.bin_ps:
-            assert (wide.compute_ps == narrow.compute_ps).all()
-            assert (wide.batches == narrow.batches).all()
-        assert wide.compute_ps.sum() == narrow.compute_ps.sum()
+@given(case=cases(), engine=st.sampled_from(list(ENGINES)))
+@many
+def test_counters_are_those_of_the_event_log(case: Case, engine: str) -> None:
+    counted_run(case, engine)
+
+
+@pytest.mark.parametrize("engine", list(ENGINES))
+@pytest.mark.parametrize("seed", [227, 363])
+def test_loads_that_never_depart_are_not_counted(seed: int, engine: str) -> None:
+    case = with_policy(random_case(seed), refresh_ps=0, load_info="piggyback")
+    log = counted_run(case, engine)
+    assert ((log["event"] == SEND) & (log["number"] == NONE)).any()
+
+
+def counted_run(case: Case, engine: str) -> NDArray[np.void]:
+    """The event log of a run, which says the same as its counters."""
+    options: dict[str, Any] = {"ready_order": case.ready_order, "engine": engine}
+    arguments = (case.workload, case.machine, case.placement, case.policy)
+    result = simulate(*arguments, **options, log=True, record_counters=True)
+    alone = simulate(*arguments, **options, record_counters=True).counters
+    counted = result.counters
+    assert counted is not None and alone is not None and result.log is not None
+    for name, expected in counters_of(case, result.log, result.makespan_ps).items():
+        assert np.array_equal(getattr(counted, name), expected), name
+        assert np.array_equal(getattr(alone, name), expected), name
+    return result.log
+
+
+def counters_of(case: Case, log: NDArray[np.void], makespan_ps: int) -> dict[str, Any]:
+    """The counters by hand, picosecond ranges cut at the edges of bins."""
+    nb, bin_ps = case.machine.processors, 1
+    while bin_ps * BINS < makespan_ps:
+        bin_ps *= 2
+    found: dict[str, Any] = {
+        "compute_ps": np.zeros((nb, BINS), np.int64),
+        "communication_ps": np.zeros((nb, BINS), np.int64),
+        "finished": np.zeros(BINS, np.int64),
+        "batches": np.zeros((3, BINS), np.int64),
+        "messages": np.zeros((nb, nb), np.int64),
+        "bytes": np.zeros((nb, nb), np.int64),
+        "sizes": np.zeros((len(MESSAGE_KINDS), SIZES), np.int64),
+    }
+    edges = np.arange(BINS + 1) * bin_ps
+    for row in log[log["event"] != ARRIVAL]:
+        pe, begin_ps, end_ps = int(row["pe"]), int(row["time_ps"]), int(row["end_ps"])
+        ending = max(end_ps - 1, 0) // bin_ps
+        tests_ps = begin_ps + case.machine.probe_ps if row["event"] == COMPUTE else end_ps
+        found["communication_ps"][pe] += np.diff(np.clip(edges, begin_ps, tests_ps))
+        found["compute_ps"][pe] += np.diff(np.clip(edges, tests_ps, end_ps))
+        if row["event"] == COMPUTE:
+            found["finished"][ending] += row["rays"]
+        if row["event"] == SEND and row["number"] != NONE:
+            n_bytes = int(row["payload_bytes"]) + case.machine.header_bytes
+            found["messages"][pe, row["other"]] += 1
+            found["bytes"][pe, row["other"]] += n_bytes
+            found["sizes"][row["kind"], n_bytes.bit_length()] += 1
+            if row["kind"] == RAYS:
+                found["batches"][:2, ending] += 1, row["rays"]
+                found["batches"][2, ending] = max(found["batches"][2, ending], row["rays"])
+    return found | {"bin_ps": bin_ps}
 
 
 def test_one_ray_that_fetches_one_object() -> None:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.compiled import njit
+from simmpp.engine.counters import Ints
 from simmpp.engine.residents import resident_bytes
 from simmpp.engine.result import Result
 from simmpp.machine.links import DIRECTIONS, ROWS_PER_PE, link_towards
 from simmpp.machine.torus import hops
-from simmpp.report.motion.counters import Counters, Ints
 from simmpp.sweeps.point import Point, PolicyRun
 
 MARKS = (95, 99, 100)
@@ -88,10 +88,13 @@ class Motion:
         return np.asarray(done / max(int(done[-1]), 1), np.float64)
 
 
-def motion_of(point: Point, run: PolicyRun, counters: Counters) -> Motion:
-    """The data of all pictures of a run, whose event log the counters have counted."""
+def motion_of(point: Point, run: PolicyRun) -> Motion:
+    """The data of all pictures of a run that recorded its counters."""
     result, machine, workload = run.result, point.machine, point.workload
-    bin_ps = 1 << int(counters.width[0])
+    counters = result.counters
+    if counters is None:
+        raise ValueError("pictures of a run: expected one that recorded its counters")
+    bin_ps = counters.bin_ps
     n_bins = max(1, -(-result.makespan_ps // bin_ps))
     compute_ps = counters.compute_ps[:, :n_bins]
     communication_ps = counters.communication_ps[:, :n_bins]

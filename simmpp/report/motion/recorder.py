@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from simmpp.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.motion.counters import MotionRecorder
 from simmpp.report.motion.motion import motion_of
 from simmpp.sweeps.point import Point, PolicyRun
 
@@ -19,7 +18,7 @@ MOST_PROCESSORS = 2048
 class FiguresRecorder:
     """Writes <policy>-<what>.png and .svg into a folder."""
 
-    needs_hops = True
+    needs_counters = True
 
     def __init__(self, folder: Path, point: Point) -> None:
         if point.machine.processors > MOST_PROCESSORS:
@@ -28,26 +27,15 @@ class FiguresRecorder:
         self._folder = folder
         self._point = point
         self._picture = _picture(point)
-        self._counting = recorder_of(point)
 
-    def begin(self, policy: PolicyParameters) -> MotionRecorder:
-        """What gets the event log of a policy's run."""
-        self._counting = recorder_of(self._point)
-        return self._counting
+    def begin(self, policy: PolicyParameters) -> None:
+        """No event log is needed."""
 
     def end(self, run: PolicyRun) -> None:
-        """The run that was begun last is over: draw it."""
+        """A run is over: draw it."""
         from simmpp.report.motion.drawing import draw_motion
 
-        counters = self._counting.end(run.result.makespan_ps)
-        draw_motion(motion_of(self._point, run, counters), self._folder, self._picture)
-
-
-def recorder_of(point: Point) -> MotionRecorder:
-    """Counters for one run of a point."""
-    nb = point.machine.processors
-    initial_load = np.bincount(point.placement.pixel_pes, minlength=nb)
-    return MotionRecorder(point.machine, initial_load, point.bound_ps)
+        draw_motion(motion_of(self._point, run), self._folder, self._picture)
 
 
 def _picture(point: Point) -> NDArray[np.uint8] | None:

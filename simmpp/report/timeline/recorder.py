@@ -30,7 +30,7 @@ class TimelineFile(Protocol):
 class TimelineRecorder:
     """One file; its format follows from its name, one of SUFFIXES."""
 
-    needs_hops = False
+    needs_counters = False
 
     def __init__(self, path: Path, machine: Machine, window: Window | None = None) -> None:
         self._file = _file(path)
