@@ -102,12 +102,13 @@ def half_up(number: Fraction) -> int:
     return (2 * number.numerator + number.denominator) // (2 * number.denominator)
 
 
-def picoseconds(value: object) -> int:
+def picoseconds(value: object, most_ps: int = LONGEST_PS) -> int:
     """``"12 us"`` -> 12000000; halves of a picosecond go up, 0 needs no unit.
 
-    Raises ConfigError for anything else but a time up to 10 s.
+    Raises ConfigError for anything else but a time up to ``most_ps``, 10 s for the cost of one
+    thing.
     """
-    return half_up(_quantity(value, "picosecond", A_TIME, LONGEST_PS))
+    return half_up(_quantity(value, "picosecond", A_TIME, most_ps))
 
 
 def byte_count(value: object) -> int:

@@ -72,8 +72,8 @@ def window_of(text: str, option: str) -> tuple[int, int]:
     """
     start, colon, end = text.partition(":")
     try:
-        start_ps = picoseconds(start) if start.strip() else 0
-        end_ps = picoseconds(end) if end.strip() else LAST_PS
+        start_ps = picoseconds(start, LAST_PS) if start.strip() else 0
+        end_ps = picoseconds(end, LAST_PS) if end.strip() else LAST_PS
     except ConfigError as error:
         raise ConfigError(f"{option}: {error}") from None
     if not colon or start_ps >= end_ps:

@@ -127,9 +127,10 @@ def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[st
         points[tuple(_cell(each.row[name]) for name in names)].append(what)
     wide = {point: told for point, told in points.items() if told}
     fewest, largest = result.profits["n"].min(), result.profits["n"].max()
+    seeds = f"{fewest} seeds" if fewest == largest else f"{fewest} to {largest} seeds"
     yield (
         f"{len(points) - len(wide)} of {len(points)} points have both profits within "
-        f"{float(tolerance):.3g}, with {fewest} to {largest} seeds"
+        f"{float(tolerance):.3g}, with {seeds}"
     )
     for point, told in list(wide.items())[:PROFITS_SHOWN]:
         where = ", ".join(f"{name} {cell}" for name, cell in zip(names, point, strict=True))

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+import matplotlib
 import numpy as np
 import pytest
 from builders import Case, cases, placement_of, random_case, with_policy, workload_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
@@ -20,7 +23,10 @@ from simmpp.machine.links import DIRECTIONS, ROWS_PER_PE, link_towards
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.motion.drawing import _progress
 from simmpp.report.motion.motion import Motion, marks_of, motion_of
+from simmpp.report.motion.torus import draw_torus
+from simmpp.report.panels import SETTINGS
 from simmpp.sweeps.point import Point, PolicyRun
 
 many = settings(max_examples=40, deadline=None, derandomize=True)
@@ -213,6 +219,23 @@ def test_one_ray_that_fetches_one_object() -> None:
     assert motion.resident_bytes.tolist() == [40, 0, 50, 0]
     assert motion.pixel_cost_ps.tolist() == [[2 * 1000 + 500]]
     assert motion.marks_ps[100] == result.makespan_ps
+
+
+def test_one_pe_has_room_for_its_scales_and_no_ticks_where_nothing_was_sent() -> None:
+    machine = Machine(**{**MACHINE, "shape": (1, 1, 1)})
+    placement = placement_of((0, 0), [0], 1)
+    workload = workload_of(1, [[0, 1]], object_bytes=(40, 50))
+    motion = seen(Case(workload, machine, placement, PolicyParameters("ray")))[1]
+    with matplotlib.rc_context(SETTINGS):
+        torus, progress = Figure(layout="constrained"), Figure(layout="constrained")
+        draw_torus(torus, motion)
+        _progress(progress, motion)
+        FigureCanvasAgg(torus).draw()
+    for scale in torus.axes[-2:]:
+        label = scale.yaxis.label.get_window_extent()
+        assert label.y0 >= 0
+        assert label.y1 <= torus.bbox.height
+    assert len(progress.axes[1].get_yticks()) == 0
 
 
 MACHINE: dict[str, Any] = {

@@ -237,6 +237,16 @@ def test_the_command_names_what_it_did_not_reach(tmp_path: Path) -> None:
     assert "ray message profit +- " in lines[0]
 
 
+def test_a_number_of_seeds_that_all_points_have_is_said_once(tmp_path: Path) -> None:
+    everything = {**CONFIG, "refine": False, "sweep": {"memory.fraction": [1]}}
+    path = tmp_path / "c.yaml"
+    path.write_text(json.dumps(everything))
+    done = CliRunner().invoke(
+        main, ["sweep", str(path), "--workers", "1", "--out", str(tmp_path / "o")]
+    )
+    assert "1 of 1 points have both profits within 0.06, with 8 seeds" in done.stdout
+
+
 def test_check_with_a_tolerance(tmp_path: Path) -> None:
     path, baseline = tmp_path / "c.yaml", tmp_path / "baseline" / "profits.csv"
     path.write_text(json.dumps(CONFIG))

@@ -13,8 +13,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from simmpp.cli import main
+from simmpp.commands.options import window_of
 from simmpp.compiled import cache_folder
-from simmpp.errors import ModelError
+from simmpp.errors import ConfigError, ModelError
 from simmpp.sweeps.columns import COLUMNS
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
@@ -326,6 +327,12 @@ def test_run_writes_a_timeline_of_every_policy() -> None:
     cut = json.loads(gzip.decompress(Path("w.json.gz").read_bytes()))["traceEvents"]
     assert max(event.get("ts", 0) for event in cut) <= 10
     assert max(event.get("ts", 0) for event in events) > 10
+
+
+def test_a_window_may_lie_where_only_a_long_run_comes() -> None:
+    assert window_of("11 s:2000 s", "--timeline-window") == (11 * 10**12, 2000 * 10**12)
+    with pytest.raises(ConfigError, match=r"value '1e30 s': expected a time .*, at most"):
+        window_of("0 ms:1e30 s", "--timeline-window")
 
 
 def test_run_draws_figures_of_every_policy() -> None:

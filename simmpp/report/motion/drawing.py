@@ -117,6 +117,7 @@ def _progress(figure: Figure, motion: Motion) -> None:
         lower.grid(axis="y", color="0.9")
         lower.legend(frameon=False, ncols=2)
     else:
+        lower.set_yticks([])
         lower.text(0.5, 0.5, "no rays were sent", ha="center", transform=lower.transAxes)
 
 

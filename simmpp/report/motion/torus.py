@@ -20,6 +20,8 @@ LINKS = LinearSegmentedColormap.from_list(
 )
 """Without the palest colours, which paper swallows; grey for links that nothing crossed."""
 _MOST_COLUMNS = 8
+_LEAST_HEIGHT = 3.2
+"""Inches that the labels beside the scales need, however few PEs there are."""
 _STUB = 0.45
 """Length of a link that leads out of a layer, or round the ring, in distances of PEs."""
 
@@ -30,7 +32,8 @@ def draw_torus(figure: Figure, motion: Motion) -> None:
     columns = min(z_size, _MOST_COLUMNS, max(1, 16 // x_size))
     rows = -(-z_size // columns)
     figure.set_size_inches(
-        max(6.3, 1.8 + 0.6 * columns * (x_size + 0.4)), 0.7 + 0.6 * rows * (y_size + 0.6)
+        max(6.3, 1.8 + 0.6 * columns * (x_size + 0.4)),
+        max(_LEAST_HEIGHT, 0.7 + 0.6 * rows * (y_size + 0.6)),
     )
     grid = figure.subplots(rows, columns, squeeze=False)
     most = int(motion.link_bytes.max(initial=0)) / 1e6 or 1.0
