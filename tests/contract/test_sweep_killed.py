@@ -22,6 +22,12 @@ from simmpp.sweeps.sweep import run_sweep
 KILLS = int(os.environ.get("SIMMPP_KILLS", "3"))
 SEED = int(os.environ.get("SIMMPP_KILLS_SEED", "0"))
 TABLES = ("results.csv", "results.parquet", "profits.csv", "run.json")
+PROGRAM = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background ignores it
+from simmpp.cli import main
+main()
+"""
 CONFIG = """
 scene: mountain:4
 picture: {resolution: 192}
@@ -46,7 +52,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 def begin(folder: Path, out: Path) -> subprocess.Popen[bytes]:
     """A sweep of two workers whose journal has its first outcome."""
-    command = [sys.executable, "-c", "from simmpp.cli import main; main()", "sweep", "c.yaml"]
+    command = [sys.executable, "-c", PROGRAM, "sweep", "c.yaml"]
     command += ["--workers", "2", "--out", str(out)]
     with open(out.with_suffix(".log"), "wb") as log:
         sweep = subprocess.Popen(
