@@ -7,9 +7,10 @@ of a module and of all that it imports: what is stale is never found.
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
-import re
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -21,8 +22,7 @@ from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-_PACKAGE = Path(__file__).parent
-_IMPORT = re.compile(r"^(?:from|import) (simmpp[\w.]*)", re.MULTILINE)
+PACKAGE = __name__.partition(".")[0]
 
 
 def njit(function: Function) -> Function:
@@ -30,7 +30,7 @@ def njit(function: Function) -> Function:
 
     It may make arrays, whoever calls it: left alone, numba would take that from the first caller.
     """
-    with _kept_in(_folder(function.__module__)) as kept:
+    with _kept_for(function) as kept:
         return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=True)(function)
 
 
@@ -40,7 +40,7 @@ def njit_reading(function: Function) -> Function:
     A search of a tree that calls one for each box takes a third of the time, a run of the engines,
     all of whose arrays are made beforehand, four fifths.
     """
-    with _kept_in(_folder(function.__module__)) as kept:
+    with _kept_for(function) as kept:
         return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
 
 
@@ -48,23 +48,28 @@ def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 
     def compile_now(function: Callable[..., object]) -> object:
-        with _kept_in(_folder(function.__module__)) as kept:
+        with _kept_for(function) as kept:
             return numba.cfunc(signature, cache=kept)(function)
 
     return compile_now
 
 
 @contextmanager
-def _kept_in(folder: Path) -> Iterator[bool]:
-    """Tell numba where to keep what is decorated here; False if nothing can be kept there.
+def _kept_for(function: Callable[..., object]) -> Iterator[bool]:
+    """Tell numba where to keep what is decorated here; False if nothing can be kept.
 
     Left alone, numba would then keep it beside the source, under no digest. Other packages'
-    functions are kept where they were.
+    functions are kept where they were. What is typed into an interactive session has no source
+    whose digest could name a folder.
     """
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    kept = _file(function.__module__) is not None
+    if kept:
+        folder = _folder(function.__module__)
+        numba.config.CACHE_DIR = str(folder)
+        kept = _is_writable(folder)
     try:
-        yield _is_writable(folder)
+        yield kept
     finally:
         numba.config.CACHE_DIR = before
 
@@ -111,21 +116,56 @@ def _folder(module: str) -> Path:
 
 def _closure(module: str) -> set[str]:
     """The module and all modules of this package that it imports, directly or not."""
-    found: set[str] = set()
+    closure: set[str] = set()
     pending = [module]
     while pending:
         name = pending.pop()
-        if name not in found:
-            found.add(name)
-            pending.extend(_IMPORT.findall(_source(name)))
-    return found
+        if name not in closure:
+            closure.add(name)
+            pending.extend(_imports(_source(name)))
+    return closure
+
+
+def _imports(source: str) -> Iterator[str]:
+    """Modules of this package that a source imports, wherever in it: functions import, too.
+
+    What only type checkers read is left out.
+    """
+    pending: list[ast.AST] = [ast.parse(source)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            continue
+        pending.extend(ast.iter_child_nodes(node))
+        if isinstance(node, ast.Import):
+            yield from filter(_is_ours, (alias.name for alias in node.names))
+        elif isinstance(node, ast.ImportFrom) and _is_ours(node.module or ""):
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from {name if _file(name) else str(node.module) for name in names}
+
+
+def _is_ours(module: str) -> bool:
+    return module.partition(".")[0] == PACKAGE
 
 
 @cache
 def _source(module: str) -> str:
-    """The text of one module; empty where it has no file (an interactive session)."""
-    path = _PACKAGE.joinpath(*module.split(".")[1:])
-    for file in (path.with_suffix(".py"), path / "__init__.py"):
-        if file.is_file():
-            return file.read_text(encoding="utf-8")
-    return ""
+    """The text of one module. Raise a ModuleNotFoundError if it has no file.
+
+    A digest that left it out would find stale code and stale workloads for ever.
+    """
+    file = _file(module)
+    if file is None:
+        raise ModuleNotFoundError(f"no file holds the source of {module}")
+    return file.read_text(encoding="utf-8")
+
+
+@cache
+def _file(module: str) -> Path | None:
+    """Where a module's source is; others than this package's have to be imported already."""
+    if _is_ours(module):
+        path = Path(__file__).parent.joinpath(*module.split(".")[1:])
+        files = (path.with_suffix(".py"), path / "__init__.py")
+        return next((file for file in files if file.is_file()), None)
+    loaded = getattr(sys.modules.get(module), "__file__", None)
+    return Path(loaded) if loaded else None

@@ -14,6 +14,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from typing import Any
 
+from simmpp.modules import PRELOAD
 from simmpp.sweeps.crew import Crew
 
 METHOD = "spawn" if sys.platform == "win32" else "forkserver"
@@ -46,7 +47,7 @@ def start_server() -> None:
     """
     if METHOD == "forkserver":
         context: Any = multiprocessing.get_context(METHOD)
-        context.set_forkserver_preload(["simmpp.sweeps.preload"])
+        context.set_forkserver_preload([PRELOAD])
         with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
             forkserver.ensure_running()
 

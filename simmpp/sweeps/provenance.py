@@ -10,10 +10,11 @@ from importlib.metadata import version
 from typing import Any
 
 from simmpp.compiled import source_digest
+from simmpp.modules import METHODS, PLACEMENT, TRACER
 
 LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh", "mapbox-earcut")
 """Libraries that rays, draws and simulated times pass through."""
-DECIDING = ("simmpp.workload.tracer", "simmpp.placement.place", "simmpp.sweeps.methods")
+DECIDING = (TRACER, PLACEMENT, METHODS)
 """Modules that, with all that they import, decide what results are."""
 
 

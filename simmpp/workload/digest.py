@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from simmpp.compiled import source_digest
+from simmpp.modules import TRACER
 from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.picture import Picture
@@ -27,7 +28,7 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
-    yield repr((source_digest("simmpp.workload.tracer"), dataclasses.astuple(picture))).encode()
+    yield repr((source_digest(TRACER), dataclasses.astuple(picture))).encode()
     camera = scene.camera
     yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +13,7 @@ import numba
 import pytest
 
 import simmpp
-from simmpp import compiled
+from simmpp import compiled, modules
 
 PACKAGE = Path(simmpp.__file__).parent
 PROGRAM = """
@@ -50,6 +52,32 @@ def test_the_digest_covers_what_a_module_imports(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(compiled, "_source", edited)
     assert compiled.source_digest("simmpp.engine.sending") != before["simmpp.engine.sending"]
     assert compiled.source_digest("simmpp.units") == before["simmpp.units"]
+
+
+def test_the_digest_covers_modules_imported_from_a_package_and_within_functions() -> None:
+    imported = compiled._closure("simmpp.workload.geometry")
+    assert "simmpp.workload.bvh" in imported  # from simmpp.workload import bvh
+    assert "simmpp.sweeps.config" in compiled._closure("simmpp.commands.run")  # in a function
+    assert "simmpp.engine.result" not in compiled._closure("simmpp")  # for type checkers only
+
+
+@pytest.mark.parametrize("module", ["simmpp.no_such_module", "simmpp.workload.nothing"])
+def test_a_module_without_a_file_has_no_digest(module: str) -> None:
+    with pytest.raises(ModuleNotFoundError, match=module):
+        compiled.source_digest(module)
+
+
+@pytest.mark.parametrize("module", modules.NAMED_MODULES)
+def test_modules_named_by_a_string_are_there(module: str) -> None:
+    assert importlib.util.find_spec(module)
+    assert len(compiled.source_digest(module)) == 16
+
+
+def test_no_other_file_names_a_module_by_a_string() -> None:
+    named = re.compile(r"""["'](simmpp\.[a-z_.]+)["']""")
+    for file in PACKAGE.rglob("*.py"):
+        if file not in (PACKAGE / "modules.py", PACKAGE / "__init__.py"):
+            assert not named.findall(file.read_text(encoding="utf-8")), file
 
 
 def test_other_packages_keep_their_own_folder() -> None:

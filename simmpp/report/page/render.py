@@ -15,7 +15,7 @@ ASSETS = "assets"
 
 def rendered(template: str, values: Mapping[str, Any]) -> str:
     """A page that needs nothing else: styles, scripts and data are in it."""
-    loader = jinja2.PackageLoader("simmpp.report.page", ASSETS)
+    loader = jinja2.PackageLoader(__name__.rpartition(".")[0], ASSETS)
     environment = jinja2.Environment(
         loader=loader,
         autoescape=True,
