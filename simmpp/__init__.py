@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from simmpp.placement.place import place
     from simmpp.placement.placement import Memory, PlacementRules
     from simmpp.policy.parameters import PolicyParameters
-    from simmpp.report.profit import profits
+    from simmpp.run.profit import profits
     from simmpp.scene.load import load_scene
-    from simmpp.sweeps.curve import estimate
+    from simmpp.studies.curve.estimate import estimate
     from simmpp.sweeps.sweep import run_sweep as sweep
-    from simmpp.workload.exchange import export_workload, import_workload
+    from simmpp.workload.exchange.exchange import export_workload, import_workload
     from simmpp.workload.picture import Picture
-    from simmpp.workload.tracer import trace
+    from simmpp.workload.trace.tracer import trace
 
 _HOME = {
     "Memory": "simmpp.placement.placement:Memory",
@@ -37,16 +37,16 @@ _HOME = {
     "PlacementRules": "simmpp.placement.placement:PlacementRules",
     "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
     "Result": "simmpp.engine.result:Result",
-    "estimate": "simmpp.sweeps.curve:estimate",
-    "export_workload": "simmpp.workload.exchange:export_workload",
-    "import_workload": "simmpp.workload.exchange:import_workload",
+    "estimate": "simmpp.studies.curve.estimate:estimate",
+    "export_workload": "simmpp.workload.exchange.exchange:export_workload",
+    "import_workload": "simmpp.workload.exchange.exchange:import_workload",
     "load_scene": "simmpp.scene.load:load_scene",
     "make_machine": "simmpp.machine.presets:machine",
     "place": "simmpp.placement.place:place",
-    "profits": "simmpp.report.profit:profits",
+    "profits": "simmpp.run.profit:profits",
     "simulate": "simmpp.engine.simulate:simulate",
     "sweep": "simmpp.sweeps.sweep:run_sweep",
-    "trace": "simmpp.workload.tracer:trace",
+    "trace": "simmpp.workload.trace.tracer:trace",
 }
 
 __all__ = [

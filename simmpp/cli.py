@@ -19,7 +19,7 @@ from simmpp.commands.run import run_command
 from simmpp.commands.scene import scene_command
 from simmpp.commands.sweep import sweep_command
 from simmpp.commands.workload import workload_command
-from simmpp.errors import InputError, ModelError
+from simmpp.common.errors import InputError, ModelError
 
 INPUT_ERROR, MODEL_ERROR, INTERRUPTED, READER_GONE = 2, 70, 130, 141
 """Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT), and a

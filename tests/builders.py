@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
+from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload

@@ -7,7 +7,7 @@ from oracles.ledger import Outcome, Slice
 from oracles.machine import simulate as simulate_slowly
 from oracles.rules import Rules
 
-from simmpp.engine.log import EVENT_KINDS
+from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.messages import MESSAGE_KINDS

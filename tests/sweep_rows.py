@@ -7,10 +7,10 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from simmpp.sweeps.columns import NUMBERS, result_columns
-from simmpp.sweeps.rows import in_order
+from simmpp.common.files import Row, write_csv
+from simmpp.methods.columns import NUMBERS, result_columns
+from simmpp.run.rows import in_order
 from simmpp.sweeps.sweep import RESULTS
-from simmpp.sweeps.tables import Row, write_csv
 
 SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
 """Of a policy; others are as fast as object dataflow."""

@@ -12,14 +12,14 @@ from by_hand import BYTE_PER_PS, OBJECT, case_of
 from numpy.typing import NDArray
 from oracles.hop_by_hop import Sent
 
+from simmpp.engine.arrays.layout import MESSAGE
+from simmpp.engine.arrays.views import messages
 from simmpp.engine.compiled_engine import LOOP, move_first
 from simmpp.engine.event_heap import EVENT_KEY, HEAD, pop, push
-from simmpp.engine.layout import MESSAGE
-from simmpp.engine.memory import messages
-from simmpp.engine.sending import inject
-from simmpp.engine.start import new_state
-from simmpp.machine.links import LINKS
+from simmpp.engine.initial import new_state
+from simmpp.engine.pe.sending import inject
 from simmpp.machine.machine import UNLIMITED, Machine
+from simmpp.machine.torus import LINKS
 
 
 def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:

@@ -24,21 +24,27 @@ from oracles.hop_by_hop import HopByHop, Sent
 from simpy.events import Event
 from traffic import arrivals_ps
 
-from simmpp.compiled import njit
+from simmpp.common.compiled import njit
+from simmpp.engine.initial import new_state
 from simmpp.engine.simpy_engine import SimpyRun
-from simmpp.engine.start import new_state
 from simmpp.engine.state import State
-from simmpp.machine.links import LINKS, ROWS_PER_PE, ejection_port, injection_port, link_towards
 from simmpp.machine.machine import Machine
-from simmpp.machine.network import transfer_ps
 from simmpp.machine.presets import machine
-from simmpp.machine.torus import hops
+from simmpp.machine.torus import (
+    LINKS,
+    ROWS_PER_PE,
+    ejection_port,
+    hops,
+    injection_port,
+    link_towards,
+)
+from simmpp.machine.transfer import transfer_ps
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 
 HERE = Path(__file__).parent
 SCENES = ("mountain:5", "tetra:5")

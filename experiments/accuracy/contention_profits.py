@@ -19,10 +19,10 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from simmpp.machine.links import CONTENTIONS, LINKS, NO_CONTENTION
-from simmpp.report.curves import Curve, Panel, Scale, Spread
-from simmpp.report.figures import NAMES
-from simmpp.report.panels import draw
+from simmpp.machine.torus import CONTENTIONS, LINKS, NO_CONTENTION
+from simmpp.plot.curves import Curve, Panel, Scale, Spread
+from simmpp.plot.matplotlib_panels import draw
+from simmpp.studies.nebel98.figures import NAMES
 
 HERE = Path(__file__).parent
 KEYS = ["scene", "machine.link_bandwidth", "machine.contention", "fraction"]

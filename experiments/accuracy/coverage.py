@@ -29,10 +29,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.sweeps.profits import MEASURES, ratio
-from simmpp.sweeps.seeding import FEWEST, corrected_interval, seeds_wanted
+from simmpp.common.files import write_csv
+from simmpp.run.profit import ratio
+from simmpp.sweeps.profits import MEASURES
+from simmpp.sweeps.stopping import FEWEST, corrected_interval, seeds_wanted
 from simmpp.sweeps.sweep import run_sweep
-from simmpp.sweeps.tables import write_csv
 
 HERE = Path(__file__).parent
 TOLERANCE, TRUE = Fraction(1, 50), 200

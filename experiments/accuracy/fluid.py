@@ -21,15 +21,15 @@ import numpy as np
 from numpy.typing import NDArray
 from rungs_runs import FIGURE4, all_runs
 
+from simmpp.common.files import write_csv
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.presets import machine
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.tables import write_csv
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
 
 FETCHES_EXPONENT = 0.62

@@ -22,9 +22,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from rungs_runs import FIGURE4, HELD_OUT, all_runs, processors_of
 
-from simmpp.model.smooth import smooth
-from simmpp.sweeps.curve import Node, profits_at
-from simmpp.sweeps.tables import write_csv
+from simmpp.common.files import write_csv
+from simmpp.studies.curve.estimate import Node, profits_at
+from simmpp.studies.curve.smooth import smooth
 
 HERE = Path(__file__).parent
 CLOSE = 0.05
@@ -64,7 +64,7 @@ def seeds_of(table: Table, kind: str) -> tuple[list[Fraction], np.ndarray]:
 
 
 def curves(table: Table, scene: str, replicates: int, shares: np.ndarray) -> Errors:
-    """The rung ``curve``, as ``simmpp.sweeps.curve.estimate`` makes it of its runs."""
+    """The rung ``curve``, as ``simmpp.studies.curve.estimate.estimate`` makes it of its runs."""
     xs, runs = seeds_of(table, "curve")
     found = []
     for at in range(0, len(runs) - replicates + 1, replicates):

@@ -17,14 +17,13 @@ import numpy as np
 
 from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
-from simmpp.placement.place import place
+from simmpp.placement.place import place, rotated
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.rotated import rotated
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.curve import node_fractions
+from simmpp.studies.curve.estimate import node_fractions
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload, frozen
 
 FILE = Path(__file__).with_name("rungs-runs.csv")

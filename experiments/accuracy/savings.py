@@ -16,7 +16,7 @@ from pathlib import Path
 
 from simmpp.sweeps.intervals import quantile
 from simmpp.sweeps.profits import MEASURES
-from simmpp.sweeps.seeding import CORRECTED, FEWEST
+from simmpp.sweeps.stopping import CORRECTED, FEWEST
 
 HERE = Path(__file__).parent
 TOLERANCE, DEFAULT_MOST = 0.02, 64

@@ -12,8 +12,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from simmpp.sweeps.tables import write_csv
-from simmpp.workload import geometry
+from simmpp.common.files import write_csv
+from simmpp.workload.trace import geometry
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parents[1] / "tests"))

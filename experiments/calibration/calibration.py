@@ -20,20 +20,19 @@ from pathlib import Path
 from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, overrides_of
 from table import draw
 
-from simmpp.report.claims import judge
-from simmpp.report.measured import Measured
-from simmpp.report.reproduce import configuration
-from simmpp.report.values import Evidence
-from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
-from simmpp.sweeps.config import Config, config_from_mapping
-from simmpp.sweeps.crew import crew_for
-from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.outcome import Outcome
+from simmpp.common.files import write_csv
+from simmpp.common.yamlfile import parse_yaml
+from simmpp.config.config import Config, config_from_mapping
+from simmpp.run.provenance import result_versions
+from simmpp.studies.nebel98.claims import judge
+from simmpp.studies.nebel98.evidence import Evidence
+from simmpp.studies.nebel98.reproduce import configuration
+from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
+from simmpp.sweeps.executors import crew_for
+from simmpp.sweeps.journal import Journal, Outcome
 from simmpp.sweeps.plan import Plan, plan
-from simmpp.sweeps.provenance import result_versions
+from simmpp.sweeps.ratios import Measured
 from simmpp.sweeps.sweep import Watcher, run_pending
-from simmpp.sweeps.tables import write_csv
-from simmpp.yamlfile import parse_yaml
 
 HERE = Path(__file__).parent
 PUBLISHED = HERE.parent / "nebel98" / "claims.csv"

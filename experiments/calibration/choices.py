@@ -11,9 +11,9 @@ import json
 from dataclasses import dataclass
 from fractions import Fraction
 
+from simmpp.config.config import Config
 from simmpp.placement.residents import resident_count
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.config import Config
 
 AS_X = "memory.transient=as many as x"
 """Not a key: the transient memory of each point holds x N objects."""

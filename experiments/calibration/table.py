@@ -10,8 +10,8 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from simmpp.report.panels import SETTINGS, save
-from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.plot.matplotlib_panels import SETTINGS, save
+from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 
 MARKS: dict[str, dict[str, Any]] = {
     HOLDS: {"marker": "o", "color": "#0072b2", "s": 46},

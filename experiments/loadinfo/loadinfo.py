@@ -19,10 +19,10 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from simmpp.report.measured import MAKESPAN, MESSAGES, Measured, mean
-from simmpp.report.panels import SETTINGS, STYLES, save
+from simmpp.common.files import write_csv
+from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
+from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, Measured, mean
 from simmpp.sweeps.sweep import RESULTS, run_sweep
-from simmpp.sweeps.tables import write_csv
 
 HERE = Path(__file__).parent
 SCENES = {

@@ -17,18 +17,18 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
-from simmpp.engine.synchronous import DATAFLOWS, synchronous
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine
 from simmpp.model.analytical import RAY_MESSAGES, analytical, rays_of
 from simmpp.model.border import FRACTIONS
 from simmpp.model.costs import costs_of
+from simmpp.model.synchronous import DATAFLOWS, synchronous
+from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweeps.tables import write_csv
-from simmpp.workload.synthetic import synthetic
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

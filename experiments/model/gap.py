@@ -15,19 +15,19 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
-from simmpp.engine.synchronous import DATAFLOWS, Dataflow, synchronous
 from simmpp.machine.presets import machine
 from simmpp.model.analytical import analytical, rays_of
 from simmpp.model.costs import costs_of
 from simmpp.model.measured import measured
+from simmpp.model.synchronous import DATAFLOWS, Dataflow, synchronous
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.tables import write_csv
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from SALib.analyze import sobol
 from scipy.stats import spearmanr
 
-from simmpp.report.panels import SETTINGS
+from simmpp.plot.matplotlib_panels import SETTINGS
 
 OUTPUTS = {
     "time_profit": ("time profit", "object_ps", "concurrent_ps"),

@@ -23,17 +23,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.plot.matplotlib_panels import SETTINGS, save
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.panels import SETTINGS, save
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.tables import write_csv
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 
 HERE = Path(__file__).parent
 SCENES = {"mountain:5": "Mountain5", "tetra:5": "Tetrahedron5"}

@@ -33,12 +33,12 @@ from indices import agreement, draw, indices, levels
 from numpy.typing import NDArray
 from SALib.sample import sobol
 
+from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
-from simmpp.report.panels import save
+from simmpp.plot.matplotlib_panels import save
 from simmpp.scene.load import load_scene
-from simmpp.sweeps.tables import write_csv
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

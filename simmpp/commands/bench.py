@@ -12,7 +12,7 @@ import click
 from simmpp.commands.options import NamedPath, available_cores, set_option, workers_option
 
 if TYPE_CHECKING:
-    from simmpp.report.rungs import Rung
+    from simmpp.studies.bench.errors import Rung
 
 RUNS_FAILED = 1
 LARGE = 10
@@ -50,11 +50,11 @@ def bench_command(
     processor's, tracing apart. Writes bench.csv, bench.png and bench.svg. The same command
     continues what was interrupted, or adds seeds. Exits with 1 if a run failed.
     """
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation, notice
-    from simmpp.report.bench import bench
-    from simmpp.sweeps.config import load_config
+    from simmpp.config.config import load_config
+    from simmpp.studies.bench.bench import bench
 
     config = load_config(config_path, overrides)
     out = Path("results", config_path.stem) if out is None else out

@@ -14,9 +14,9 @@ import click
 from simmpp.commands.options import NamedPath, available_cores, set_option, workers_option
 
 if TYPE_CHECKING:
-    from simmpp.report.baseline import Sweep
-    from simmpp.report.compare import Move
-    from simmpp.sweeps.config import Config
+    from simmpp.config.config import Config
+    from simmpp.studies.check.baseline import Sweep
+    from simmpp.studies.check.moves import Move
 
 MOVED = 1
 MOVES_SHOWN = 25
@@ -60,10 +60,10 @@ def check_command(
     tolerances in CONFIG, such as `check: {time_profit: 2%}`, only the profits named there are
     compared, each by its relative change. --update makes the baseline, or makes it anew.
     """
-    from simmpp.commands.files import folder
-    from simmpp.errors import ConfigError
-    from simmpp.report.baseline import baseline_folder, read_baseline
-    from simmpp.sweeps.config import load_config
+    from simmpp.commands.options import folder
+    from simmpp.common.errors import ConfigError
+    from simmpp.config.config import load_config
+    from simmpp.studies.check.baseline import baseline_folder, read_baseline
 
     if update and overrides:
         raise ConfigError("expected --update or --set: a baseline is of CONFIG as it is")
@@ -85,7 +85,7 @@ def check_command(
 def _swept(config: Config, workers: int | None, cluster: str | None, into: Path) -> Sweep:
     """The sweep, always run anew."""
     from simmpp.commands.sweeping import progress_of_sweep
-    from simmpp.report.baseline import read_sweep
+    from simmpp.studies.check.baseline import read_sweep
     from simmpp.sweeps.sweep import run_sweep
 
     with progress_of_sweep() as watcher:
@@ -101,8 +101,8 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
 
 def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: Path | None) -> int:
     """Print what moved and write the artefacts; the exit code."""
-    from simmpp.report.baseline import reasons
-    from simmpp.report.compare import moves
+    from simmpp.studies.check.baseline import reasons
+    from simmpp.studies.check.moves import moves
 
     found = moves(baseline.tables, now.tables, config.settings.check.tolerances)
     rows = f"{len(now.tables.results)} rows, {len(now.tables.profits)} points"
@@ -117,9 +117,9 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
 def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Path) -> int:
     """Write the baseline and say what is new in it; the exit code."""
     from simmpp.commands.terminal import notice
-    from simmpp.errors import ConfigError
-    from simmpp.report.baseline import UPDATE, read_baseline, reasons, write_baseline
-    from simmpp.report.compare import moves
+    from simmpp.common.errors import ConfigError
+    from simmpp.studies.check.baseline import UPDATE, read_baseline, reasons, write_baseline
+    from simmpp.studies.check.moves import moves
 
     failed = [row for row in now.tables.results if row["error"]]
     if failed:
@@ -142,7 +142,7 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
 
 def _print(found: Sequence[Move], why: Sequence[str]) -> None:
     from simmpp.commands.terminal import output, table
-    from simmpp.report.compare import lines, summary
+    from simmpp.studies.check.moves import lines, summary
 
     console = output()
     console.print(table(summary(found)))
@@ -169,10 +169,10 @@ def _rounded(line: Mapping[str, str]) -> dict[str, str]:
 
 def _write(found: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, out: Path) -> None:
     """What a failed check leaves for people: tables and a picture."""
-    from simmpp.report.baseline import PROFITS, RECORD, RESULTS
-    from simmpp.report.compare import lines
+    from simmpp.common.files import write_csv
     from simmpp.report.page.overlay import overlay
-    from simmpp.sweeps.tables import write_csv
+    from simmpp.studies.check.baseline import PROFITS, RECORD, RESULTS
+    from simmpp.studies.check.moves import lines
 
     for name in (PROFITS, RESULTS, RECORD):
         shutil.copyfile(obtained / name, out / name)

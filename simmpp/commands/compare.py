@@ -27,7 +27,7 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
     interval of their ratios. Always exits with 0 (2 for what can't be read): for a verdict in
     continuous integration there is check.
     """
-    from simmpp.commands.files import writable
+    from simmpp.commands.options import writable
     from simmpp.report.page.comparison import reasons, verdict, write_comparison
     from simmpp.report.page.difference import difference_of
     from simmpp.report.page.folder import read_folder

@@ -16,8 +16,8 @@ def machine_command(preset: str) -> None:
     from rich.table import Table
 
     from simmpp.commands.terminal import output
-    from simmpp.machine.links import LINKS, NO_CONTENTION
     from simmpp.machine.presets import load_preset
+    from simmpp.machine.torus import LINKS, NO_CONTENTION
 
     chosen = load_preset(preset)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))

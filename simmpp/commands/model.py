@@ -10,8 +10,8 @@ import click
 from simmpp.commands.options import FiniteRange, NamedPath, set_option
 
 if TYPE_CHECKING:
+    from simmpp.config.config import Config
     from simmpp.model.analytical import Makespans
-    from simmpp.sweeps.config import Config
     from simmpp.workload.workload import Workload
 
 
@@ -48,11 +48,17 @@ def model_command(
     step, costs those of its machine. --out writes figure2.csv, and figure2.png and .svg: the winner
     over nb and x for several cost ratios, and the border.
     """
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.commands.terminal import notice, output, table
     from simmpp.commands.tracing import workload as workload_of
-    from simmpp.report.model import ANALYTICAL, MEASURED, model_grid, model_times, rows_of
-    from simmpp.sweeps.config import load_config
+    from simmpp.config.config import load_config
+    from simmpp.studies.nebel98.figure2_data import (
+        ANALYTICAL,
+        MEASURED,
+        model_grid,
+        model_times,
+        rows_of,
+    )
 
     config = load_config(config_path, overrides)
     folder(out, "--out")
@@ -78,9 +84,9 @@ def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
     """``startup=0.1`` as a name and a factor."""
     import math
 
-    from simmpp.errors import ConfigError
+    from simmpp.common.errors import ConfigError
     from simmpp.model.costs import GROUPS
-    from simmpp.report.model import DEFAULT_RATIOS
+    from simmpp.studies.nebel98.figure2_data import DEFAULT_RATIOS
 
     ratios: list[tuple[str, float]] = []
     for text in texts:
@@ -109,7 +115,7 @@ def _heading(config: Config, workload: Workload) -> str:
 
 
 def _cell(name: str, value: object) -> object:
-    from simmpp.units import format_ps
+    from simmpp.common.units import format_ps
 
     if name.endswith("_ps") and isinstance(value, int):
         return format_ps(value)
@@ -136,8 +142,8 @@ def _write(
 ) -> None:
     from simmpp.model.analytical import rays_of
     from simmpp.model.costs import costs_of
-    from simmpp.report.figure2 import draw_figure2
-    from simmpp.report.model import model_grid, panels, write_model
+    from simmpp.studies.nebel98.figure2_data import model_grid, panels, write_model
+    from simmpp.studies.nebel98.figure2_plot import draw_figure2
 
     write_model(rows, out)
     costs = costs_of(config.machine_for(config.processors), workload)

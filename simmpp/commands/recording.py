@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from simmpp.engine.log import Sink
+    from simmpp.engine.record.log import Sink
     from simmpp.policy.parameters import PolicyParameters
-    from simmpp.sweeps.point import Point, PolicyRun
+    from simmpp.run.point import Point, PolicyRun
 
 
 class Looks(NamedTuple):
@@ -27,8 +27,8 @@ class Looks(NamedTuple):
 
 def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
     """Raise ConfigError unless a timeline can be written there."""
-    from simmpp.commands.files import writable
-    from simmpp.errors import ConfigError
+    from simmpp.commands.options import writable
+    from simmpp.common.errors import ConfigError
     from simmpp.report.timeline.recorder import SUFFIXES
 
     if path is None and window is not None:
@@ -67,7 +67,7 @@ def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
             stack.callback(timeline.close)
             recorders.append(timeline)
         if looks.figures is not None:
-            from simmpp.report.motion.recorder import FiguresRecorder
+            from simmpp.report.run_figures.recorder import FiguresRecorder
 
             recorders.append(FiguresRecorder(looks.figures, point))
         yield recorders

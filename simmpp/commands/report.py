@@ -27,7 +27,7 @@ def report_command(folder_path: Path, live: bool) -> None:
     where and how surely, the curves, and every number of the point that is clicked on; and each
     figure in DIR/figures as PNG and SVG.
     """
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.report.page.folder import read_folder
     from simmpp.report.page.report import PAGE, report_of, write_page
 
@@ -45,8 +45,7 @@ def _follow(folder_path: Path, page: Path) -> None:
     """Say how many rows are done whenever the page is written."""
     from simmpp.commands.terminal import notice
     from simmpp.report.page.folder import read_folder
-    from simmpp.report.page.live import follow
-    from simmpp.report.page.report import report_of, write_page
+    from simmpp.report.page.report import follow, report_of, write_page
 
     notice(f"{page}: reloads itself while the sweep runs")
     try:
@@ -60,10 +59,10 @@ def _follow(folder_path: Path, page: Path) -> None:
 
 def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.commands.terminal import progress_bars
+    from simmpp.report.page.overlay import write_stills
     from simmpp.report.page.report import FIGURES
-    from simmpp.report.page.stills import write_stills
 
     to = report.folder.path / FIGURES
     folder(to, "DIR")

@@ -12,7 +12,7 @@ import click
 from simmpp.commands.options import NamedPath, available_cores, workers_option
 
 if TYPE_CHECKING:
-    from simmpp.report.reproduce import Reproduction
+    from simmpp.studies.nebel98.reproduce import Reproduction
 
 POINTS_FAILED = 1
 
@@ -47,10 +47,10 @@ def reproduce_command(
     SVG) and claims.csv. The same command continues what was interrupted; more seeds, or another
     resolution, add to what is there. Exits with 1 if a point failed.
     """
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation
-    from simmpp.report.reproduce import reproduce
+    from simmpp.studies.nebel98.reproduce import reproduce
 
     folder(out, "--out")
     announce_compilation()

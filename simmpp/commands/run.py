@@ -15,8 +15,8 @@ from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
-    from simmpp.sweeps.config import Config
-    from simmpp.sweeps.point import Point, PolicyRun
+    from simmpp.config.config import Config
+    from simmpp.run.point import Point, PolicyRun
 
 VERIFY_FAILED = 1
 
@@ -66,9 +66,9 @@ def run_command(
     CONFIG is a YAML file; its keys are listed in the README. Object dataflow is run as the
     reference of the profits and the replicated scene as the ceiling, if they are not named.
     """
-    from simmpp.commands.files import folder, writable
+    from simmpp.commands.options import folder, writable
     from simmpp.commands.terminal import notice
-    from simmpp.sweeps.config import load_config
+    from simmpp.config.config import load_config
 
     if engine is not None:
         overrides = (*overrides, f"engine={engine}")
@@ -92,8 +92,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     from simmpp.commands.terminal import output
     from simmpp.commands.tracing import workload
-    from simmpp.report.summary import summary
-    from simmpp.sweeps.point import make_point, refuse_models
+    from simmpp.run.point import make_point, refuse_models
+    from simmpp.run.summary import summary
 
     refuse_models(config)
     if looks.picture or verify:
@@ -114,7 +114,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
 
 
 def _require_scene(config: Config, option: str) -> None:
-    from simmpp.errors import ConfigError
+    from simmpp.common.errors import ConfigError
 
     if config.settings.scene.workload is not None:
         problem = "expected a scene to trace; a workload file has rays, but no geometry"
@@ -126,7 +126,7 @@ def _simulate(
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
-    from simmpp.sweeps.point import run_point
+    from simmpp.run.point import run_point
 
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
@@ -151,8 +151,8 @@ def _simulate(
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    from simmpp.report.record import record, write_record
-    from simmpp.sweeps.rows import row, write_rows
+    from simmpp.run.record import record, write_record
+    from simmpp.run.rows import row, write_rows
 
     write_record(record(point, runs), out / "run.json")
     write_rows([row(point, run) for run in runs], out / "results.csv")
@@ -161,7 +161,7 @@ def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     from simmpp.scene.load import load_scene
-    from simmpp.workload.shading import render, save_png
+    from simmpp.workload.trace.shading import render, save_png
 
     scene = load_scene(point.config.scene_spec)
     save_png(render(scene, point.config.picture, point.workload), path)
@@ -172,7 +172,7 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     import numpy as np
 
     from simmpp.scene.load import load_scene
-    from simmpp.workload.verify import verify
+    from simmpp.workload.trace.verify import verify
 
     scene, failed = load_scene(point.config.scene_spec), False
     nothing = np.zeros(0, np.int32)

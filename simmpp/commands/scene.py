@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from simmpp.commands.options import NamedPath
-from simmpp.units import counted, format_bytes
+from simmpp.common.units import counted, format_bytes
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -32,7 +32,7 @@ def scene_command(
     SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size) or a file: NFF, or a
     mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
     """
-    from simmpp.commands.files import writable
+    from simmpp.commands.options import writable
     from simmpp.scene.load import load_scene
     from simmpp.scene.nff import write_nff
 
@@ -114,7 +114,7 @@ def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
     from simmpp.commands.tracing import traced
     from simmpp.workload.picture import Picture
-    from simmpp.workload.shading import render, save_png
+    from simmpp.workload.trace.shading import render, save_png
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)
     save_png(render(scene, picture, traced(scene, picture)), path)

@@ -21,7 +21,7 @@ from simmpp.commands.options import (
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from simmpp.sweeps.settings import Settings
+    from simmpp.config.settings import Settings
     from simmpp.sweeps.sweep import SweepResult
 
 POINTS_FAILED = 1
@@ -64,8 +64,8 @@ def sweep_command(
     seeds are added until the profits of each point are known that well. The same command
     continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
     """
-    from simmpp.errors import ConfigError
-    from simmpp.sweeps.processes import start_server
+    from simmpp.common.errors import ConfigError
+    from simmpp.sweeps.executors import start_server
 
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
@@ -73,10 +73,10 @@ def sweep_command(
     if workers > 1 and cluster is None:
         start_server()  # before the imports below take their time
 
-    from simmpp.commands.files import folder
+    from simmpp.commands.options import folder
     from simmpp.commands.sweeping import progress_of_sweep
     from simmpp.commands.terminal import announce_compilation
-    from simmpp.sweeps.config import load_config
+    from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
 
     if engine is not None:
@@ -115,7 +115,7 @@ def _conclude(result: SweepResult, settings: Settings, out: Path) -> int:
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:
     """How many points have their profits within the tolerance, and which have not."""
-    from simmpp.sweeps.reached import missed
+    from simmpp.sweeps.profits import missed
 
     profits: list[dict[Any, Any]] = result.profits.to_dict("records")
     names = [name for name in _names(result) if name != "policy"]
@@ -149,7 +149,7 @@ def _table(result: SweepResult) -> Table:
     """The first profits; the reference's own say nothing."""
     from rich.table import Table
 
-    from simmpp.sweeps.point import REFERENCE
+    from simmpp.run.point import REFERENCE
 
     profits, names = result.profits[result.profits["policy"] != REFERENCE], _names(result)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))

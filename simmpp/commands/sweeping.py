@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from simmpp.commands.terminal import notice
-from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.plan import Plan
 from simmpp.sweeps.profits import best_policy
 from simmpp.sweeps.sweep import Watcher

@@ -52,8 +52,8 @@ def notice(text: str) -> None:
 
 def announce_compilation() -> None:
     """Say why nothing seems to happen when engine and tracer are used for the first time."""
-    from simmpp.compiled import cache_folder, is_compiled, keeps_code
-    from simmpp.modules import CANDIDATES, STEP
+    from simmpp.common.compiled import cache_folder, is_compiled, keeps_code
+    from simmpp.common.modules import CANDIDATES, STEP
 
     if not all(map(is_compiled, (CANDIDATES, STEP))):
         often = "once" if keeps_code() else f"each time, as {cache_folder()} can't be written"

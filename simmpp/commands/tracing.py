@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from simmpp.commands.terminal import announce_compilation, notice, progress_bars
+from simmpp.config.config import Config
+from simmpp.run.inputs import workload_of
 from simmpp.scene.scene import Scene
-from simmpp.sweeps.config import Config
-from simmpp.sweeps.workloads import workload_of
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
-from simmpp.workload.store import workload_for
-from simmpp.workload.tracer import Progress
+from simmpp.workload.trace.tracer import Progress
 from simmpp.workload.workload import Workload
 
 

@@ -29,11 +29,11 @@ def workload_command(
     configuration (.yaml). --export writes rays and objects as tables that other tools can read
     and `scene: {workload: FILE}` reads back.
     """
-    from simmpp.commands.files import writable
+    from simmpp.commands.options import writable
     from simmpp.commands.tracing import workload
-    from simmpp.errors import ConfigError
-    from simmpp.sweeps.config import config_from_mapping, load_config
-    from simmpp.workload.exchange import SUFFIXES, export_workload, is_workload
+    from simmpp.common.errors import ConfigError
+    from simmpp.config.config import config_from_mapping, load_config
+    from simmpp.workload.exchange.exchange import SUFFIXES, export_workload, is_workload
 
     writable(export, "--export")
     if export and not is_workload(export.name):
@@ -53,7 +53,7 @@ def _list(workload: Workload, most_objects: int | None) -> None:
     import numpy as np
 
     from simmpp.commands.terminal import output, table
-    from simmpp.units import format_bytes
+    from simmpp.common.units import format_bytes
     from simmpp.workload.describe import generations, object_uses, rays_by_kind
 
     console = output()

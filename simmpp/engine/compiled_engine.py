@@ -7,18 +7,17 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit_reading as njit
-from simmpp.engine.activities import SLEEP, step
-from simmpp.engine.alone import run_alone
+from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.errors import ModelError
+from simmpp.engine.arrays.hashtable import USED
+from simmpp.engine.arrays.layout import NONE, Row, Run
+from simmpp.engine.arrays.views import messages, messages_marks, outbox
 from simmpp.engine.event_heap import EVENT_KEY, HEAD, INSTANT, pop, push, replace_first
-from simmpp.engine.layout import NONE, Row, Run
-from simmpp.engine.log import note_arrival
-from simmpp.engine.memory import messages, messages_marks, outbox
-from simmpp.engine.sending import move_head
-from simmpp.engine.starved import starved
-from simmpp.engine.state import State
-from simmpp.engine.tables import USED
-from simmpp.errors import ModelError
+from simmpp.engine.local_only import run_alone
+from simmpp.engine.pe.sending import move_head
+from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.record.log import note_arrival
+from simmpp.engine.state import State, starved
 
 EVENTS_PER_CALL = 1 << 20
 """So that progress is shown and Ctrl-C is heard."""

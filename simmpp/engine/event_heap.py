@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.compiled import njit_reading as njit
-from simmpp.engine.layout import Row
+from simmpp.common.compiled import njit_reading as njit
+from simmpp.engine.arrays.layout import Row
 
 INSTANT = 1 << 62
 """Rank of a PE's own instants, above all pairs of PEs."""

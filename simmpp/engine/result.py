@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.counters import Counters
+from simmpp.engine.record.counters import Counters
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 

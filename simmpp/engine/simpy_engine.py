@@ -15,14 +15,13 @@ from collections.abc import Callable, Generator
 import simpy
 from simpy.events import Event
 
-from simmpp.engine.activities import SLEEP, step
-from simmpp.engine.entry import entry_point
-from simmpp.engine.layout import BEGIN, MESSAGE, NONE
-from simmpp.engine.log import note_arrival
-from simmpp.engine.sending import move_head
-from simmpp.engine.starved import starved
-from simmpp.engine.state import State
-from simmpp.errors import ModelError
+from simmpp.common.compiled import entry_point
+from simmpp.common.errors import ModelError
+from simmpp.engine.arrays.layout import BEGIN, MESSAGE, NONE
+from simmpp.engine.pe.sending import move_head
+from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.record.log import note_arrival
+from simmpp.engine.state import State, starved
 
 _HEAD_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     list(MESSAGE.names or ()).index(name)

@@ -7,22 +7,22 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.errors import ConfigError, ModelError
+from simmpp.engine.arrays.hashtable import USED
+from simmpp.engine.arrays.layout import NONE
+from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
-from simmpp.engine.fit import check_fit
-from simmpp.engine.layout import NONE
-from simmpp.engine.log import Collector, Sink
+from simmpp.engine.initial import new_state
+from simmpp.engine.record.log import Collector, Sink
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
-from simmpp.engine.start import new_state
 from simmpp.engine.state import State
-from simmpp.engine.tables import USED
-from simmpp.errors import ConfigError, ModelError
+from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
-from simmpp.machine.work import beyond_the_clock, check_counters
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.registry import POLICIES
 from simmpp.policy.rules import DataflowPolicy
-from simmpp.policy.table import POLICIES
 from simmpp.workload.workload import Workload
 
 ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {

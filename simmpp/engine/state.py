@@ -7,18 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.bins import BINS, SIZES
-from simmpp.engine.counters import Counters, end_counting
-from simmpp.engine.layout import (
+from simmpp.engine.arrays.hashtable import USED
+from simmpp.engine.arrays.layout import (
     ARRAYS,
+    BINS,
     COUNTERS,
     PARAMETERS,
     REPORT,
     RUN,
+    SIZES,
 )
-from simmpp.engine.log import LOG_ROWS, Sink, hand_on, hand_on_last
-from simmpp.engine.residents import Arrays
-from simmpp.engine.tables import USED
+from simmpp.engine.record.counters import Counters, end_counting
+from simmpp.engine.record.log import LOG_ROWS, Sink, hand_on, hand_on_last
+from simmpp.engine.residency import Arrays
 
 
 class State:
@@ -109,3 +110,16 @@ class State:
         bigger = np.zeros(2 * len(before) + more, before.dtype)
         bigger[: len(before)] = before
         self._put(name, bigger)
+
+
+# --- the state of a machine that stands still, in words ---
+
+
+def starved(state: State) -> str:
+    """What to say when rays are left and nothing is scheduled: a bug, or a policy that starves."""
+    load = state.pes["load"]
+    holders = [f"PE {k}: {load[k]} rays, all waiting" for k in load.nonzero()[0][:5]]
+    return (
+        f"{state['rays_left']} rays are left and nothing is scheduled "
+        f"after {state['tests']} tests: {'; '.join(holders)}"
+    )

@@ -6,11 +6,11 @@ from typing import Annotated
 
 from pydantic import Field
 
-from simmpp.errors import ConfigError
-from simmpp.machine.links import CONTENTIONS, NO_CONTENTION
+from simmpp.common.errors import ConfigError
+from simmpp.common.strict import Bandwidth, Expect, Size, Strict, Time, integer, one_of, parsed_by
+from simmpp.common.units import picoseconds, shown
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.strict import Bandwidth, Expect, Size, Strict, Time, integer, one_of, parsed_by
-from simmpp.units import picoseconds, shown
+from simmpp.machine.torus import CONTENTIONS, NO_CONTENTION
 
 MOST_PROCESSORS = 65536
 """PEs of the largest torus of the presets: Blue Gene/L."""

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.machine.links import NO_CONTENTION
-from simmpp.units import UNLIMITED as UNLIMITED
+from simmpp.common.units import UNLIMITED as UNLIMITED
+from simmpp.machine.torus import NO_CONTENTION
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 

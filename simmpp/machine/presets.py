@@ -8,15 +8,15 @@ from functools import cache
 from importlib.resources import as_file, files
 from math import prod
 
-from simmpp.arguments import require_whole
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.units import shown
+from simmpp.common.validate import require_whole
+from simmpp.common.yamlfile import Document, KeyPath, read_yaml
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.machine.torus import default_shape
-from simmpp.strict import Place, misplaced, structure
-from simmpp.units import shown
-from simmpp.yamlfile import Document, KeyPath, read_yaml
 
 _FOLDER = files("simmpp") / "machine" / "presets"
 OVERRIDDEN = "set by the user"

@@ -26,10 +26,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.randomness import generator
 from simmpp.model.costs import Costs
 from simmpp.model.formulas import makespan, object_dataflow_ps, ray_dataflow_ps
-from simmpp.streams import generator
-from simmpp.workload.lockstep import steps_of
+from simmpp.model.lockstep import steps_of
 from simmpp.workload.workload import Workload
 
 Floats = NDArray[np.float64]

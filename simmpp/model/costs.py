@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
-from simmpp.machine.network import PS_PER_S, transfer_ps
+from simmpp.machine.transfer import PS_PER_S, transfer_ps
 from simmpp.workload.workload import Workload
 
 GROUPS = {

@@ -8,12 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.counts import Counts
-from simmpp.engine.synchronous import Dataflow, synchronous
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import RAYS
 from simmpp.model.costs import Costs, costs_of
 from simmpp.model.formulas import makespan, object_dataflow_ps, ray_dataflow_ps
+from simmpp.model.synchronous import Counts, Dataflow, synchronous
 from simmpp.placement.placement import Placement
 from simmpp.workload.workload import Workload
 

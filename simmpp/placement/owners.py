@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.placement.parts import cut
-from simmpp.placement.placement import Owners
-from simmpp.streams import generator
+from simmpp.common.randomness import generator
+from simmpp.placement.placement import Owners, cut
 
 MORTON_BITS = 21
 """Bits a coordinate is cut to, so that three of them interleave into 63."""

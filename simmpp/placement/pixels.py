@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.placement.parts import cut
-from simmpp.placement.placement import Pixels
-from simmpp.streams import generator
+from simmpp.common.randomness import generator
+from simmpp.placement.placement import Pixels, cut
 
 
 def pixel_pes(

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from simmpp.arguments import MOST_COUNT, MOST_SEED, require_whole
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from simmpp.common.randomness import generator
+from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_whole
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.residents import replicas
+from simmpp.placement.residents import Ids, replicas, resident_count
 from simmpp.workload.workload import Workload
 
 
@@ -35,3 +41,54 @@ def draws(memory: Memory, rules: PlacementRules) -> bool:
     """Whether the seed has a part in a placement; otherwise it is the same for every seed."""
     residents = memory.residents == "random" and (memory.bytes is not None or memory.fraction < 1)
     return residents or "random" in (rules.owners, rules.pixels)
+
+
+# --- residents for several fractions at once ---
+
+
+def rotated(
+    workload: Workload,
+    processors: int,
+    fractions: Sequence[Fraction],
+    rules: PlacementRules,
+    seed: int,
+) -> list[Placement]:
+    """A placement for each fraction, in their order, with random residents and no transient memory.
+
+    Owners and pixels are the same in all of them, and together the residents treat all objects
+    alike. Each PE has one random order of the objects it does not own, a circle. The first fraction
+    takes its replicas from the beginning of it, the next one goes on where that ended, and so on
+    round the circle. Each placement alone is as random as one of :func:`place`; but an object that
+    one fraction has left out is held at the next, so what luck does to one run is undone by its
+    neighbour's, where nested residents would repeat it.
+    Source: systematic sampling (Cochran 1977, Sampling Techniques, chapter 8), along a sweep.
+    """
+    n_objects = workload.n_objects
+    owner_of = owners(rules.owners, workload.object_centroids, processors, seed)
+    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    counts = [resident_count(fraction, n_objects) for fraction in fractions]
+    held = [_turns(_circle(owner_of, pe, seed), owner_of, counts) for pe in range(processors)]
+    placements = []
+    for number in range(len(fractions)):
+        parts = [turns[number] for turns in held]
+        offsets = np.concatenate([[0], np.cumsum([len(ids) for ids in parts])]).astype(np.int64)
+        objects = np.concatenate(parts, dtype=np.int32)
+        placements.append(Placement(processors, owner_of, offsets, objects, 0, starts_on))
+    return placements
+
+
+def _circle(owner_of: Ids, pe: int, seed: int) -> Ids:
+    """The objects that a PE does not own, in random order."""
+    others = np.flatnonzero(owner_of != pe).astype(np.int32)
+    return generator(seed, "rotated", pe).permutation(others)
+
+
+def _turns(circle: Ids, owner_of: Ids, counts: Sequence[int]) -> list[Ids]:
+    """The replicas of one PE for each number of residents, one after the other round the circle."""
+    n_own, twice = len(owner_of) - len(circle), np.concatenate([circle, circle])
+    start, turns = 0, []
+    for count in counts:
+        wanted = max(0, count - n_own)
+        turns.append(twice[start : start + wanted])
+        start = (start + wanted) % max(1, len(circle))
+    return turns

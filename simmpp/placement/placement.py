@@ -9,8 +9,17 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.arguments import require_share, require_whole, require_word
-from simmpp.machine.work import MOST_BYTES
+from simmpp.common.validate import require_share, require_whole, require_word
+from simmpp.machine.limits import MOST_BYTES
+
+# --- cutting a row of things into near-equal parts ---
+
+
+def cut(n: int, parts: int) -> NDArray[np.int32]:
+    """The part of each of n things in a row, cut at floor(i n / parts): (n,) int32."""
+    cuts = np.arange(parts + 1, dtype=np.int64) * n // parts
+    return np.repeat(np.arange(parts, dtype=np.int32), np.diff(cuts))
+
 
 Owners = Literal["bisection", "morton", "round_robin", "random"]
 Residents = Literal["random", "nearest", "hot"]

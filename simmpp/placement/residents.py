@@ -8,8 +8,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.randomness import generator
 from simmpp.placement.placement import Memory, Residents
-from simmpp.streams import generator
 from simmpp.workload.workload import Workload
 
 COARSE_STEP = 4

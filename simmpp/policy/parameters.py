@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, get_args
 
-from simmpp.arguments import MOST_COUNT, require_whole, require_word
-from simmpp.errors import ConfigError
-from simmpp.machine.work import CLOCK_LIMIT_PS
-from simmpp.units import shown
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import shown
+from simmpp.common.validate import MOST_COUNT, require_whole, require_word
+from simmpp.machine.limits import CLOCK_LIMIT_PS
 
 LoadInfo = Literal["piggyback", "exact", "none"]
 

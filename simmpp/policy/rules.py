@@ -14,7 +14,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from simmpp.compiled import cfunc
+from simmpp.common.compiled import cfunc
 
 SEND_RULE = types.int64(
     types.int64,  # load: rays this PE holds

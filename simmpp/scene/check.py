@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.scene import Material, MeshPart, Polygon, Scene, SceneObject
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.scene.scene import Floats
 
 Indices = NDArray[np.int64]

@@ -7,12 +7,12 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from simmpp.errors import ConfigError, SceneError
+from simmpp.common.errors import ConfigError, SceneError
+from simmpp.common.files import refuse_special
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd import generators
-from simmpp.special import refuse_special
 
 KEYS = {"spd": {"spd", "size"}, "nff": {"nff"}, "mesh": {"mesh", "objects"}}
 """What a scene mapping starts from, and the keys it may then have."""

@@ -10,7 +10,7 @@ import math
 import re
 from typing import NoReturn
 
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.scene import Vector
 
 LARGEST = 1e30

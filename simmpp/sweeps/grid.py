@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from itertools import product
 from math import prod
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import counted
+from simmpp.config.axes import axes_of
+from simmpp.config.config import Config, described, point_at
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweeps.axes import axes_of
-from simmpp.sweeps.config import Config, described, point_at
-from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.seeding import first_seeds
-from simmpp.units import counted
+from simmpp.run.point import REFERENCE
+from simmpp.sweeps.stopping import first_seeds
 
 MOST_POINTS = 1_000_000
 """Combinations of values and seeds of one sweep: a day's work at ten a second."""

@@ -9,13 +9,32 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from simmpp.errors import ConfigError
-from simmpp.sweeps.outcome import Outcome
-from simmpp.sweeps.provenance import difference
+from simmpp.common.errors import ConfigError
+from simmpp.run.provenance import difference
+
+# --- what a simulation leaves behind: the integers of its row, or why it failed ---
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One finished task."""
+
+    key: str
+    """The task's."""
+    numbers: dict[str, int] = field(default_factory=dict)
+    """The integers of its row by column; empty if it failed."""
+    effective_fraction: float = 0.0
+    wall_s: float = 0.0
+    """Placement + event loop."""
+    cpu_s: float = 0.0
+    """The same on the processor, whatever else runs beside it."""
+    error: str = ""
+    """One line; empty if all went well."""
+
 
 FILE = "points.jsonl"
 FORMAT = 1

@@ -9,12 +9,14 @@ import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from statistics import fmean
+from typing import NamedTuple
 
-from simmpp.sweeps.columns import KEYS
+from simmpp.common.files import Row, sort_key
+from simmpp.methods.columns import KEYS
+from simmpp.run.point import REFERENCE
+from simmpp.run.profit import ratio
 from simmpp.sweeps.intervals import interval
-from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.seeding import corrected_interval
-from simmpp.sweeps.tables import Row, sort_key
+from simmpp.sweeps.stopping import corrected_interval
 
 MEASURES = {"time_profit": "makespan_ps", "message_profit": "messages"}
 """Each profit and the column that it is a ratio of."""
@@ -147,16 +149,41 @@ def _mean(values: Sequence[float]) -> float | str:
     return fmean(values) if values else ""
 
 
-def ratio(reference: int, value: int) -> float:
-    """reference / value; nothing over nothing is 1, something over nothing is infinite."""
-    if value:
-        return reference / value
-    return math.inf if reference else 1.0
-
-
 def _statistics(values: Sequence[float], bounds: tuple[float, float] | None) -> dict[str, object]:
     """Mean, interval, extremes; what can't be said is empty."""
     if not values:
         return dict.fromkeys(STATISTICS, "")
     numbers = (fmean(values), *(bounds or ("", "")), min(values), max(values))
     return dict(zip(STATISTICS, numbers, strict=True))
+
+
+# --- which profits of a sweep with a tolerance are known that well, and which are not ---
+
+
+ROUNDING = 1e-9
+"""A half-width that is exactly the tolerance may be rounded to more."""
+
+
+class Missed(NamedTuple):
+    """A profit whose interval is wider than the tolerance."""
+
+    row: Row
+    """Of ``profits.csv``."""
+    measure: str
+    half_width: float
+    """Of the interval, relative to the mean."""
+
+
+def missed(profits: Iterable[Row], tolerance: Fraction) -> list[Missed]:
+    """Profits that all the seeds there may be have not made known within the tolerance."""
+    found = [
+        Missed(row, measure, (row[f"{measure}_high"] - row[f"{measure}_low"]) / 2 / row[measure])
+        for row in profits
+        for measure in MEASURES
+        if all(_is_number(row[name]) for name in (measure, f"{measure}_low")) and row[measure]
+    ]
+    return [each for each in found if each.half_width > float(tolerance) * (1 + ROUNDING)]
+
+
+def _is_number(cell: object) -> bool:
+    return isinstance(cell, float) and math.isfinite(cell)

@@ -12,22 +12,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from simmpp.sweeps.columns import result_columns
-from simmpp.sweeps.config import Config, config_from_mapping, load_config, with_key
-from simmpp.sweeps.crew import Crew
-from simmpp.sweeps.execute import outcomes as execute
-from simmpp.sweeps.frontier import Frontier
-from simmpp.sweeps.hiring import crew_for
-from simmpp.sweeps.journal import Journal, Results
-from simmpp.sweeps.outcome import Outcome
+from simmpp.common.files import Row, as_arrow, write_csv, write_parquet, write_text
+from simmpp.config.config import Config, config_from_mapping, load_config, with_key
+from simmpp.methods.columns import result_columns
+from simmpp.run.inputs import cache_workload
+from simmpp.run.provenance import all_versions
+from simmpp.sweeps.adaptive import Frontier
+from simmpp.sweeps.executors import Crew, crew_for
+from simmpp.sweeps.journal import Journal, Outcome, Results
 from simmpp.sweeps.plan import Plan, plan
 from simmpp.sweeps.profits import profit_columns, profit_rows
-from simmpp.sweeps.provenance import all_versions
-from simmpp.sweeps.showing import Showing
-from simmpp.sweeps.tables import Row, as_arrow, write_csv, write_parquet, write_text
+from simmpp.sweeps.scheduler import outcomes as execute
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import keep_workload
-from simmpp.sweeps.workloads import cache_workload
 
 if TYPE_CHECKING:
     import pandas
@@ -219,3 +216,30 @@ def _frame(rows: list[Row], columns: Sequence[str]) -> pandas.DataFrame:
     gaps = any(table[name].null_count for name in columns if table[name].type == pyarrow.int64())
     nullable = {pyarrow.int64(): pandas.Int64Dtype()}
     return table.to_pandas(types_mapper=nullable.get if gaps else None)
+
+
+# --- when to write the tables of a sweep that is still running ---
+
+
+SHOWN_S, SHARE = 5.0, 20
+"""Seconds between two writings at least, and how many times as long as one writing takes."""
+
+
+class Showing:
+    """Writes the tables of a sweep that runs now and then, for those who watch it.
+
+    At once, then every SHOWN_S seconds, or less often if writing takes more than a twentieth.
+    """
+
+    def __init__(self, write: Callable[[], None]) -> None:
+        self._write = write
+        write()  # takes its time to import, which is not counted
+        self._next_s = time.monotonic() + SHOWN_S
+
+    def __call__(self) -> None:
+        """Write if it is time."""
+        began_s = time.monotonic()
+        if began_s >= self._next_s:
+            self._write()
+            ended_s = time.monotonic()
+            self._next_s = ended_s + max(SHOWN_S, SHARE * (ended_s - began_s))

@@ -8,14 +8,14 @@ from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from simmpp.config.config import Config
+from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.table import POLICIES
-from simmpp.sweeps.config import Config
+from simmpp.policy.registry import POLICIES
+from simmpp.run.point import CEILING
 from simmpp.sweeps.grid import GridPoint
-from simmpp.sweeps.methods import METHODS, SIMULATE
-from simmpp.sweeps.point import CEILING
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,26 +2,82 @@
 
 from __future__ import annotations
 
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
 from threading import Lock
 from typing import Generic, TypeVar
 
-from simmpp.errors import SimmppError
+import numpy as np
+
+from simmpp.common.errors import SimmppError
+from simmpp.engine.simulate import simulate
+from simmpp.machine.presets import machine
+from simmpp.methods.case import Case
+from simmpp.methods.table import METHODS, Method
 from simmpp.placement.place import place
-from simmpp.placement.placement import Placement
-from simmpp.policy.table import POLICIES
-from simmpp.sweeps.case import Case
-from simmpp.sweeps.methods import METHODS, Method
-from simmpp.sweeps.outcome import Outcome
-from simmpp.sweeps.provenance import difference, result_versions
-from simmpp.sweeps.stopwatch import Seconds, Stopwatch, now
+from simmpp.placement.placement import Memory, Placement, PlacementRules
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.registry import POLICIES
+from simmpp.run.inputs import shared_workload
+from simmpp.run.provenance import difference, result_versions
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
-from simmpp.sweeps.warm import warm_up
-from simmpp.sweeps.workloads import shared_workload
-from simmpp.workload.workload import Workload
+from simmpp.workload.workload import SPHERE, Workload
+
+# --- how long one task takes, on the clock and on the processor ---
+
 
 Made = TypeVar("Made")
+
+
+class TimedOut(SimmppError):
+    """A point took longer than it may."""
+
+
+@dataclass(frozen=True)
+class Seconds:
+    """A span of time."""
+
+    wall: float
+    cpu: float
+    """Of this thread."""
+
+    def __add__(self, other: Seconds) -> Seconds:
+        return Seconds(self.wall + other.wall, self.cpu + other.cpu)
+
+    def __sub__(self, other: Seconds) -> Seconds:
+        return Seconds(self.wall - other.wall, self.cpu - other.cpu)
+
+
+def now() -> Seconds:
+    """Since some moment that is always the same."""
+    return Seconds(time.perf_counter(), time.thread_time())
+
+
+class Stopwatch:
+    """Times one task; what it shares with others counts whoever made it."""
+
+    def __init__(self, timeout_s: float | None) -> None:
+        self._timeout_s, self._began, self._shared = timeout_s, now(), Seconds(0.0, 0.0)
+
+    def count(self, shared: tuple[Made, Seconds]) -> Made:
+        """Take something with the seconds that it took: the rest begins here."""
+        made, self._shared = shared
+        self._began = now()
+        return made
+
+    @property
+    def seconds(self) -> Seconds:
+        """What was shared and the rest."""
+        return self._shared + (now() - self._began)
+
+    def look(self, rays_left: int) -> None:
+        """Raise TimedOut if it is time."""
+        if self._timeout_s is not None and self.seconds.wall > self._timeout_s:
+            raise TimedOut(f"timeout: not finished after {self._timeout_s:g} s")
 
 
 class Kept(Generic[Made]):
@@ -111,3 +167,37 @@ def _effective_fraction(case: Case, method: Method) -> float:
     if method.is_placed:
         return case.place().effective_fraction
     return max(float(case.fraction), 1 / case.machine.processors)
+
+
+# --- the first run of a process loads or makes compiled code; here it is one that isn't timed ---
+
+
+PROCESSORS = N_OBJECTS = 2
+
+
+@cache
+def warm_up(engine: str) -> None:
+    """Simulate the smallest machine that sends messages, once per process."""
+    placement = place(_WORKLOAD, PROCESSORS, Memory(), PlacementRules(), seed=0)
+    policy = PolicyParameters("concurrent")
+    simulate(_WORKLOAD, machine(processors=PROCESSORS), placement, policy, engine=engine)
+
+
+_WORKLOAD = Workload(
+    name="two rays",
+    digest="",
+    picture=(1, 2),
+    kinds=np.zeros(2, np.uint8),
+    parents=np.full(2, -1, np.int32),
+    child_offsets=np.full(3, 2, np.int32),
+    pixels=np.arange(2, dtype=np.int32),
+    hits=np.array([1, 0], np.int32),
+    hit_distances=np.ones(2),
+    itinerary_offsets=np.arange(3),
+    itinerary_objects=np.array([1, 0], np.int32),
+    object_kinds=np.full(N_OBJECTS, SPHERE, np.uint8),
+    object_triangles=np.zeros(N_OBJECTS, np.int32),
+    object_bytes=np.full(N_OBJECTS, 100),
+    object_centroids=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]),
+)
+"""Each ray starts at one PE and needs the object of the other."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.errors import WorkloadError
+from simmpp.common.errors import WorkloadError
 from simmpp.workload.workload import OBJECT_KINDS, PRIMARY, RAY_KINDS, SHADOW, Workload
 
 DTYPES = {

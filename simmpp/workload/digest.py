@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from simmpp.compiled import source_digest
-from simmpp.modules import TRACER
+from simmpp.common.compiled import source_digest
+from simmpp.common.modules import TRACER
 from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
 from simmpp.scene.wire import bytes_on_the_wire
 from simmpp.workload.picture import Picture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from simmpp.arguments import require_whole, require_word
+from simmpp.common.validate import require_whole, require_word
 
 Samples = Literal["centres", "corners"]
 

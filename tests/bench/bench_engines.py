@@ -17,10 +17,10 @@ import numpy as np
 
 import simmpp
 from simmpp.engine.result import Result
-from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import Machine
+from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
-from simmpp.workload.store import workload_for
+from simmpp.workload.cache.store import workload_for
 from simmpp.workload.workload import SPHERE, Workload
 
 EXCHANGES = 128_000

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 import simmpp
-from simmpp.engine.log import Sink
+from simmpp.engine.record.log import Sink
 from simmpp.report.timeline.recorder import SUFFIXES, TimelineRecorder
-from simmpp.sweeps.point import PolicyRun
+from simmpp.run.point import PolicyRun
 
 REPEATS = 25
 

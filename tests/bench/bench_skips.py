@@ -21,17 +21,17 @@ from unittest.mock import patch
 import numpy as np
 
 import simmpp
+from simmpp.config.config import config_from_mapping
+from simmpp.engine.arrays.hashtable import USED
+from simmpp.engine.arrays.layout import WANT
 from simmpp.engine.compiled_engine import CompiledRun
-from simmpp.engine.layout import WANT
-from simmpp.engine.start import new_state
-from simmpp.engine.tables import USED
-from simmpp.sweeps.config import config_from_mapping
+from simmpp.engine.initial import new_state
 from simmpp.sweeps.plan import plan
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.worker import run_task
-from simmpp.workload import tracer
-from simmpp.workload.shading import render
-from simmpp.workload.store import workload_for
+from simmpp.workload.cache.store import workload_for
+from simmpp.workload.trace import tracer
+from simmpp.workload.trace.shading import render
 from simmpp.workload.workload import Workload
 
 SCENES = ("mountain:5", "rings:1", "tetra:6")
@@ -102,7 +102,7 @@ def passes(spec: str) -> Iterator[Row]:
     def all_passes(*arguments: object):
         return replace(chosen(*arguments), reflection=True, refraction=True)
 
-    with patch("simmpp.workload.tracer.spawning", all_passes):
+    with patch("simmpp.workload.trace.tracer.spawning", all_passes):
         every_pass = best_s(lambda: simmpp.trace(scene, simmpp.Picture()))
     yield "no pass without material", spec, "s", skipping, every_pass
 

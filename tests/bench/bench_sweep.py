@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from simmpp.sweeps import execute
-from simmpp.sweeps.config import load_config
-from simmpp.sweeps.outcome import Outcome
+from simmpp.config.config import load_config
+from simmpp.sweeps import scheduler as execute
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.sweep import Watcher, run_sweep
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import run_task

@@ -15,13 +15,13 @@ import numpy as np
 
 from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Scene
-from simmpp.workload.candidates import find_itineraries
-from simmpp.workload.geometry import Geometry, flatten
-from simmpp.workload.intersect import Intersector
-from simmpp.workload.normalise import frame_of
 from simmpp.workload.picture import Picture
-from simmpp.workload.rays import Rays, children, first_generation, joined, spawning
-from simmpp.workload.tracer import BATCH, trace
+from simmpp.workload.trace.embree import Intersector
+from simmpp.workload.trace.frame import frame_of
+from simmpp.workload.trace.generations import Rays, children, first_generation, joined, spawning
+from simmpp.workload.trace.geometry import Geometry, flatten
+from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.tracer import BATCH, trace
 from simmpp.workload.workload import SHADOW
 
 REPEATS = 3

@@ -9,14 +9,14 @@ from urllib.parse import unquote
 import pytest
 from sweep_rows import failed, sweep, written
 
+from simmpp.common.files import Row
+from simmpp.methods.columns import NUMBERS
 from simmpp.report.page import words
 from simmpp.report.page.comparison import write_comparison
 from simmpp.report.page.difference import difference_of
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
-from simmpp.sweeps.columns import NUMBERS
-from simmpp.sweeps.tables import Row
 
 pytestmark = pytest.mark.browser
 

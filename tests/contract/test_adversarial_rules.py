@@ -16,10 +16,10 @@ from builders import Case, random_case
 from implementations import run
 from oracles.rules import Rules, View
 
+from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import ENGINES
-from simmpp.errors import ModelError
+from simmpp.policy.registry import POLICIES
 from simmpp.policy.rules import DataflowPolicy, ask_rule, send_rule
-from simmpp.policy.table import POLICIES
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "40"))
 

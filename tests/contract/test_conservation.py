@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from implementations import outcome_of, result_of
 from numpy.typing import NDArray
 
-from simmpp.engine.log import EVENT_KINDS
+from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
-from simmpp.policy.table import POLICIES
+from simmpp.policy.registry import POLICIES
 
 pytestmark = pytest.mark.parametrize("engine", ENGINES)
 many = settings(max_examples=30, deadline=None, derandomize=True)

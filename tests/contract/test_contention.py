@@ -14,10 +14,10 @@ from oracles.machine import Simulation
 from oracles.network import Network
 from oracles.rules import RULES
 
-from simmpp.engine.log import EVENT_KINDS
+from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.simulate import ENGINES, simulate
-from simmpp.machine.links import LINKS, NO_CONTENTION
 from simmpp.machine.machine import UNLIMITED
+from simmpp.machine.torus import LINKS, NO_CONTENTION
 
 many = settings(max_examples=30, deadline=None, derandomize=True)
 

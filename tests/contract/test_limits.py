@@ -11,11 +11,11 @@ from by_hand import OBJECT, case_of
 from implementations import run as run_case_on
 
 import simmpp
+from simmpp.common.errors import ConfigError
 from simmpp.engine.simulate import ENGINES
-from simmpp.errors import ConfigError
-from simmpp.machine.links import LINKS, NO_CONTENTION
-from simmpp.machine.work import CLOCK_LIMIT_PS
-from simmpp.policy.table import POLICIES
+from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.torus import LINKS, NO_CONTENTION
+from simmpp.policy.registry import POLICIES
 from simmpp.scene.scene import Camera, Scene
 
 PICTURE = simmpp.Picture(resolution=4)

@@ -15,8 +15,8 @@ from oracles.network import Network
 from oracles.rules import RULES
 from traffic import arrivals_ps
 
-from simmpp.machine.links import LINKS
 from simmpp.machine.machine import Machine
+from simmpp.machine.torus import LINKS
 
 SHAPES = ((2, 1, 1), (5, 1, 1), (4, 4, 1), (3, 3, 3), (4, 3, 2))
 

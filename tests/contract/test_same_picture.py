@@ -13,9 +13,9 @@ import pytest
 import simmpp
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.placement import Owners, Pixels, Residents
-from simmpp.policy.table import POLICIES
-from simmpp.workload.shading import render
-from simmpp.workload.verify import verify
+from simmpp.policy.registry import POLICIES
+from simmpp.workload.trace.shading import render
+from simmpp.workload.trace.verify import verify
 
 PICTURE = simmpp.Picture(resolution=12)
 PROCESSORS = 6

@@ -16,16 +16,16 @@ import pytest
 from builders import Case, everywhere, random_case, random_workload, with_policy
 
 import simmpp
+from simmpp.common.errors import ConfigError
 from simmpp.engine import compiled_engine
-from simmpp.engine.alone import run_alone
+from simmpp.engine.arrays.hashtable import USED
+from simmpp.engine.initial import new_state
+from simmpp.engine.local_only import run_alone
 from simmpp.engine.result import Result
-from simmpp.engine.start import new_state
 from simmpp.engine.state import State
-from simmpp.engine.tables import USED
-from simmpp.errors import ConfigError
-from simmpp.machine.work import CLOCK_LIMIT_PS
-from simmpp.workload import tracer
-from simmpp.workload.rays import Spawning
+from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.workload.trace import tracer
+from simmpp.workload.trace.generations import Spawning
 from simmpp.workload.workload import Workload
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "300"))

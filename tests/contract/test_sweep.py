@@ -15,24 +15,25 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from simmpp.cli import main
-from simmpp.compiled import cache_folder
+from simmpp.common.compiled import cache_folder
+from simmpp.common.errors import ConfigError, ModelError
+from simmpp.config.config import config_from_mapping, with_key
 from simmpp.engine.simulate import simulate
-from simmpp.errors import ConfigError, ModelError
+from simmpp.methods import simulation as simulating
+from simmpp.methods.columns import result_columns
+from simmpp.methods.simulation import integers
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.table import POLICIES
+from simmpp.policy.registry import POLICIES
+from simmpp.run.inputs import workload_of
+from simmpp.run.point import make_point, run_point
+from simmpp.run.rows import in_order, row
 from simmpp.sweeps import plan as planning
-from simmpp.sweeps import simulating, worker
-from simmpp.sweeps.columns import result_columns
-from simmpp.sweeps.config import config_from_mapping, with_key
-from simmpp.sweeps.crew import Crew
-from simmpp.sweeps.execute import outcomes
+from simmpp.sweeps import worker
+from simmpp.sweeps.executors import Crew
 from simmpp.sweeps.plan import Plan, plan
-from simmpp.sweeps.point import make_point, run_point
-from simmpp.sweeps.rows import in_order, row
-from simmpp.sweeps.simulating import integers
+from simmpp.sweeps.scheduler import outcomes
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.task import canonical
-from simmpp.sweeps.workloads import workload_of
 
 CONFIG = {
     "scene": "tetra:2",

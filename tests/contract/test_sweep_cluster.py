@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.compiled import cache_folder
-from simmpp.errors import ConfigError
-from simmpp.sweeps.outcome import Outcome
+from simmpp.common.compiled import cache_folder
+from simmpp.common.errors import ConfigError
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.sweep import Watcher, run_sweep
 
 CONFIG = {
@@ -91,7 +91,7 @@ def test_a_killed_worker_changes_nothing(cluster: Cluster, tmp_path: Path) -> No
 
 
 def test_no_cluster_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simmpp.sweeps.cluster.CONNECT_S", 1)
+    monkeypatch.setattr("simmpp.sweeps.executors.CONNECT_S", 1)
     for address in ("tcp://127.0.0.1:9", "nonsense://x", ""):
         with pytest.raises(ConfigError, match="--cluster: value ") as error:
             run_sweep(CONFIG, cluster=address)

@@ -8,10 +8,10 @@ from concurrent.futures.process import BrokenProcessPool
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.sweeps.config import config_from_mapping
-from simmpp.sweeps.crew import Crew
-from simmpp.sweeps.execute import WORKER_DIED, outcomes
-from simmpp.sweeps.outcome import Outcome
+from simmpp.config.config import config_from_mapping
+from simmpp.sweeps.executors import Crew
+from simmpp.sweeps.journal import Outcome
+from simmpp.sweeps.scheduler import WORKER_DIED, outcomes
 from simmpp.sweeps.task import Task
 
 

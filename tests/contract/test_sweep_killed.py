@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.compiled import cache_folder
+from simmpp.common.compiled import cache_folder
 from simmpp.sweeps.journal import FILE
 from simmpp.sweeps.sweep import run_sweep
 

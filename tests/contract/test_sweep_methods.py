@@ -5,18 +5,18 @@ import math
 import pandas
 import pytest
 
-from simmpp.engine.synchronous import synchronous
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.config.config import config_from_mapping
+from simmpp.methods.table import METHODS
 from simmpp.model.analytical import analytical, rays_of
 from simmpp.model.costs import costs_of
 from simmpp.model.measured import measured
+from simmpp.model.synchronous import synchronous
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.sweeps.config import config_from_mapping
-from simmpp.sweeps.methods import METHODS
+from simmpp.run.inputs import workload_of
 from simmpp.sweeps.plan import plan
 from simmpp.sweeps.sweep import run_sweep
-from simmpp.sweeps.workloads import workload_of
 
 CONFIG = {
     "scene": "tetra:2",

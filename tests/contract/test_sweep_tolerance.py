@@ -12,12 +12,13 @@ import pytest
 from click.testing import CliRunner
 
 from simmpp.cli import main
-from simmpp.compiled import cache_folder
+from simmpp.common.compiled import cache_folder
+from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import simulate
-from simmpp.errors import ModelError
-from simmpp.sweeps import simulating, sweep, worker
-from simmpp.sweeps.crew import Crew
-from simmpp.sweeps.seeding import FEWEST
+from simmpp.methods import simulation as simulating
+from simmpp.sweeps import sweep, worker
+from simmpp.sweeps.executors import Crew
+from simmpp.sweeps.stopping import FEWEST
 from simmpp.sweeps.sweep import run_sweep
 
 TOLERANCE, MOST = Fraction(6, 100), 24
@@ -165,7 +166,7 @@ class Shuffled(Crew):
 def test_the_order_of_outcomes_is_irrelevant(
     expected: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
-    from simmpp.sweeps import execute
+    from simmpp.sweeps import scheduler as execute
 
     crew = Shuffled(seed)
     real = execute.wait

@@ -8,8 +8,9 @@ from builders import Case, cases
 from hypothesis import given, settings
 from numpy.typing import NDArray
 
-from simmpp.engine import start, state
-from simmpp.engine.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
+from simmpp.engine import initial as start
+from simmpp.engine import state
+from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.messages import LOAD

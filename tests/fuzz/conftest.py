@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.compiled import cache_folder
+from simmpp.common.compiled import cache_folder
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 """Compiled code is shared with the other tests."""

@@ -9,8 +9,8 @@ from fuzzing import answered, changed_words, damaged, examples, mutated, written
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.errors import ConfigError
-from simmpp.sweeps.config import Config, load_config
+from simmpp.common.errors import ConfigError
+from simmpp.config.config import Config, load_config
 
 # ruff: noqa: E501, RUF001, SIM905
 NUMBERS = st.sampled_from(

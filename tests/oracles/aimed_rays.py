@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.workload.geometry import Geometry
+from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.workload import CONE, POLYGON, SPHERE
 
 

@@ -16,12 +16,12 @@ import numpy as np
 
 from oracles.mitsuba_scene import MitsubaScene
 from simmpp.scene.scene import Scene
-from simmpp.workload.candidates import find_itineraries
-from simmpp.workload.geometry import Geometry
 from simmpp.workload.picture import Picture
-from simmpp.workload.rays import Rays
-from simmpp.workload.replay import generations, traced
-from simmpp.workload.tracer import trace
+from simmpp.workload.trace.generations import Rays
+from simmpp.workload.trace.geometry import Geometry
+from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.replay import generations, traced
+from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import POLYGON, SHADOW
 
 START = 1e-4

@@ -10,7 +10,7 @@ import numpy as np
 
 from simmpp.scene.scene import Cone, Scene, Sphere
 from simmpp.scene.triangles import triangles
-from simmpp.workload.normalise import Frame
+from simmpp.workload.trace.frame import Frame
 
 TRIANGLES = "triangles"
 

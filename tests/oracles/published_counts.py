@@ -11,7 +11,7 @@ import numpy as np
 
 from simmpp.scene.load import load_scene
 from simmpp.workload.picture import Picture
-from simmpp.workload.tracer import trace
+from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import PRIMARY, SHADOW
 
 QUANTITIES = ("primary hits", "shadow rays", "blocked", "secondary rays", "secondary hits")

@@ -9,10 +9,10 @@ from click.testing import CliRunner
 
 import simmpp
 from simmpp.cli import main
-from simmpp.errors import ConfigError
-from simmpp.sweeps.config import load_config
+from simmpp.common.errors import ConfigError
+from simmpp.config.config import load_config
 from simmpp.sweeps.grid import MOST_POINTS, grid
-from simmpp.workload import tracer
+from simmpp.workload.trace import tracer
 
 
 def test_pictures_that_no_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:

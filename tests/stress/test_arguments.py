@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import simmpp
-from simmpp.errors import ConfigError, SceneError
+from simmpp.common.errors import ConfigError, SceneError
 from simmpp.scene.scene import Camera, Cone, Light, Material, MeshPart, Polygon, Scene, Sphere
-from simmpp.workload.store import workload_for
+from simmpp.workload.cache.store import workload_for
 
 NAN, INF = float("nan"), float("inf")
 TRIANGLE = np.array([[-1.0, 0, -1], [1, 0, -1], [0, 0, 1]])

@@ -13,16 +13,16 @@ import pytest
 from oracles.brute_force import OPEN, BruteForce
 
 import simmpp
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Camera, Cone, Light, Material, MeshPart, Polygon, Scene, Sphere
-from simmpp.workload.candidates import find_itineraries
 from simmpp.workload.check import check
-from simmpp.workload.geometry import Geometry, flatten
-from simmpp.workload.intersect import Intersector
-from simmpp.workload.normalise import frame_of
-from simmpp.workload.shading import render
-from simmpp.workload.tracer import trace
+from simmpp.workload.trace.embree import Intersector
+from simmpp.workload.trace.frame import frame_of
+from simmpp.workload.trace.geometry import Geometry, flatten
+from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.shading import render
+from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import PRIMARY, REFLECTED, SHADOW, Workload
 
 NEAR = 1e-9

@@ -18,15 +18,15 @@ from hypothesis import strategies as st
 from transforms import moved, scaled
 
 import simmpp
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.load import load_scene
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Camera, Cone, Light, Material, MeshPart, Polygon, Scene, Sphere
-from simmpp.workload.intersect import Intersector
-from simmpp.workload.normalise import frame_of
-from simmpp.workload.shading import render
-from simmpp.workload.tracer import trace
+from simmpp.workload.trace.embree import Intersector
+from simmpp.workload.trace.frame import frame_of
+from simmpp.workload.trace.shading import render
+from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import Workload
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "40"))

@@ -16,12 +16,12 @@ from implementations import IMPLEMENTATIONS, run
 from oracles.ledger import Outcome
 
 import simmpp
+from simmpp.common.errors import ConfigError
 from simmpp.engine.simulate import ENGINES
-from simmpp.errors import ConfigError
+from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.machine.torus import hops
-from simmpp.machine.work import CLOCK_LIMIT_PS
-from simmpp.report.profit import profits
+from simmpp.run.profit import profits
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "25"))
 FREE = CopyCost(0, UNLIMITED)

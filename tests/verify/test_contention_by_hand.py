@@ -13,8 +13,8 @@ import pytest
 from by_hand import BYTE_PER_PS, MACHINE, OBJECT, activities_of, case_of
 from implementations import IMPLEMENTATIONS, run
 
-from simmpp.machine.links import LINKS
 from simmpp.machine.machine import CopyCost
+from simmpp.machine.torus import LINKS
 from simmpp.workload.workload import MESH, SPHERE
 
 pytestmark = pytest.mark.parametrize("implementation", IMPLEMENTATIONS)

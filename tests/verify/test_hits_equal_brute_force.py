@@ -9,10 +9,10 @@ from oracles.brute_force import OPEN, BruteForce
 
 from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Camera, Light, Material, MeshPart, Scene
-from simmpp.workload.candidates import SLACK, find_itineraries
-from simmpp.workload.geometry import Geometry, flatten
-from simmpp.workload.intersect import Intersector
-from simmpp.workload.normalise import frame_of
+from simmpp.workload.trace.embree import Intersector
+from simmpp.workload.trace.frame import frame_of
+from simmpp.workload.trace.geometry import Geometry, flatten
+from simmpp.workload.trace.itineraries import SLACK, find_itineraries
 from simmpp.workload.workload import PRIMARY, SHADOW
 
 RAYS = 100_000

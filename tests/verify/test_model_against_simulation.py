@@ -8,10 +8,10 @@ from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
 from simmpp.model.analytical import RayMessages, analytical, rays_of
 from simmpp.model.costs import costs_of
+from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.workload.synthetic import synthetic
 from simmpp.workload.workload import Workload
 
 NEAR = 1.25

@@ -7,17 +7,23 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.report.claims import judge
-from simmpp.report.figures import FIGURES, PERCENT
-from simmpp.report.measured import Measured
-from simmpp.report.reproduce import EXPERIMENTS, MODEL, Reproduction, configuration, reproduce
-from simmpp.report.values import Evidence
-from simmpp.report.verdict import Verdict
-from simmpp.sweeps.config import load_config
-from simmpp.sweeps.outcome import Outcome
+from simmpp.common.files import Row
+from simmpp.config.config import load_config
+from simmpp.studies.nebel98.claims import judge
+from simmpp.studies.nebel98.evidence import Evidence
+from simmpp.studies.nebel98.figures import FIGURES, PERCENT
+from simmpp.studies.nebel98.reproduce import (
+    EXPERIMENTS,
+    MODEL,
+    Reproduction,
+    configuration,
+    reproduce,
+)
+from simmpp.studies.nebel98.verdict import Verdict
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.profits import profit_rows
+from simmpp.sweeps.ratios import Measured
 from simmpp.sweeps.sweep import Watcher
-from simmpp.sweeps.tables import Row
 
 PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
 CLAIMS = ["F2a", "F2b", "F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2"]

@@ -18,10 +18,9 @@ from oracles.hop_by_hop import Sent
 from oracles.network import links
 from traffic import arrivals_ps
 
-from simmpp.machine.links import CONTENTIONS
 from simmpp.machine.machine import CopyCost
-from simmpp.machine.network import PS_PER_S, transfer_ps
-from simmpp.machine.torus import hops
+from simmpp.machine.torus import CONTENTIONS, hops
+from simmpp.machine.transfer import PS_PER_S, transfer_ps
 
 SIMGRID = json.loads(
     (Path(__file__).parents[1] / "golden" / "simgrid" / "torus.json").read_text(encoding="utf-8")

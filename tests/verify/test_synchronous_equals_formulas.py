@@ -7,25 +7,25 @@ import numpy as np
 import pytest
 from builders import BANDWIDTHS, TIMES_PS, random_placement, random_workload
 
-from simmpp.engine.counts import Counts
-from simmpp.engine.synchronous import (
-    DATAFLOWS,
-    MOST_PROCESSORS,
-    Dataflow,
-    SynchronousResult,
-    synchronous,
-)
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine, TestCost
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.torus import default_shape
 from simmpp.model.costs import costs_of
 from simmpp.model.formulas import makespan
+from simmpp.model.lockstep import steps_of
 from simmpp.model.measured import step_times_ps
+from simmpp.model.synchronous import (
+    DATAFLOWS,
+    MOST_PROCESSORS,
+    Counts,
+    Dataflow,
+    SynchronousResult,
+    synchronous,
+)
+from simmpp.model.synthetic import LIVES, synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.workload.lockstep import steps_of
-from simmpp.workload.synthetic import LIVES, synthetic
 from simmpp.workload.workload import Workload
 
 DRAWS = 500

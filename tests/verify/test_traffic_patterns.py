@@ -12,8 +12,7 @@ from by_hand import MACHINE
 from oracles.hop_by_hop import Sent
 from traffic import arrivals_ps
 
-from simmpp.machine.links import ROWS_PER_PE, link_towards
-from simmpp.machine.torus import hops
+from simmpp.machine.torus import ROWS_PER_PE, hops, link_towards
 
 Shape = tuple[int, int, int]
 SHAPES: tuple[Shape, ...] = ((2, 2, 2), (4, 4, 4), (8, 4, 2), (3, 5, 1))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from simmpp.report.bench_figure import bench_panels
-from simmpp.report.figures import NAMES
+from simmpp.common.files import Row
 from simmpp.report.page.figure import Figure
-from simmpp.report.rungs import rungs
-from simmpp.sweeps.tables import Row
+from simmpp.studies.bench.errors import rungs
+from simmpp.studies.bench.figure import bench_panels
+from simmpp.studies.nebel98.figures import NAMES
 
 STEM = "run-time-against-error"
 

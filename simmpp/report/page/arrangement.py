@@ -6,9 +6,9 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from simmpp.common.files import Row, sort_key
+from simmpp.methods.columns import KEYS
 from simmpp.report.page import words
-from simmpp.sweeps.columns import KEYS
-from simmpp.sweeps.tables import Row, sort_key
 
 AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 PREFERRED = ("fraction", "processors")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from simmpp.report.bars import Bars
-from simmpp.report.curves import Scale
+from simmpp.plot.curves import Bars, Scale
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, styles_of

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from simmpp.errors import ConfigError
-from simmpp.report.figures import FIGURES
+from simmpp.common.errors import ConfigError
 from simmpp.report.page import accuracy, bar_figures
 from simmpp.report.page.profit_figures import TITLES
+from simmpp.studies.nebel98.figures import FIGURES
 
 TOPICS = {
     "sensitivity": "Sensitivity",

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from simmpp.report.page.points import Points
+from simmpp.run.point import CEILING
+from simmpp.run.profit import ratio
 from simmpp.sweeps.intervals import interval
-from simmpp.sweeps.point import CEILING
-from simmpp.sweeps.profits import ratio
 
 SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""

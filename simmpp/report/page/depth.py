@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from simmpp.common.files import Row
+from simmpp.methods.columns import NUMBERS
+from simmpp.plot.plotly_panels import COLOURS, PARTS
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.figure import styles_of
-from simmpp.report.page.interactive import COLOURS, PARTS
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
-from simmpp.sweeps.columns import NUMBERS
 from simmpp.sweeps.profits import MEASURES, STATISTICS
-from simmpp.sweeps.tables import Row
 
 EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""

@@ -12,16 +12,16 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from simmpp.errors import ConfigError
-from simmpp.report.compare import percent
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import format_ps
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
+from simmpp.run.point import REFERENCE
+from simmpp.run.profit import ratio
+from simmpp.studies.check.moves import percent
 from simmpp.sweeps.intervals import interval
-from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.profits import ratio
-from simmpp.units import format_ps
 
 BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "too few seeds"
 MEASURES = {

@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from simmpp.report.bars import Bars
-from simmpp.report.curves import Panel
+from simmpp.common.files import Row
+from simmpp.plot.curves import Bars, Panel
 from simmpp.report.page import words
-from simmpp.sweeps.tables import Row
 
 
 @dataclass(frozen=True)

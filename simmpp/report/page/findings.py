@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 
+from simmpp.common.units import counted
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.contest import (
@@ -21,8 +22,7 @@ from simmpp.report.page.contest import (
     replicated_policies,
 )
 from simmpp.report.page.points import Points
-from simmpp.sweeps.point import REFERENCE
-from simmpp.units import counted
+from simmpp.run.point import REFERENCE
 
 
 @dataclass(frozen=True)

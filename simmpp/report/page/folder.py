@@ -10,16 +10,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from simmpp.errors import ConfigError
-from simmpp.report.bench import BENCH
-from simmpp.report.reproduce import CLAIMS, EXPERIMENTS
-from simmpp.report.rungs import bench_columns
-from simmpp.report.verdict import COLUMNS as CLAIM_COLUMNS
-from simmpp.sweeps.columns import COLUMNS, KEYS, METHOD, NUMBERS
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import Row, read_csv
+from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS
+from simmpp.run.rows import in_order
+from simmpp.studies.bench.bench import BENCH
+from simmpp.studies.bench.errors import bench_columns
+from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
+from simmpp.studies.nebel98.verdict import COLUMNS as CLAIM_COLUMNS
 from simmpp.sweeps.profits import profit_columns
-from simmpp.sweeps.rows import in_order
 from simmpp.sweeps.sweep import PROFITS, RECORD, RESULTS, TIMINGS
-from simmpp.sweeps.tables import Row, read_csv
 
 INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS}, {"fraction", "effective_fraction"}
 MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS}

@@ -6,9 +6,9 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from simmpp.common.units import counted
 from simmpp.report.page import words
 from simmpp.report.page.folder import Folder
-from simmpp.units import counted
 
 UNSAID = ("sweep", "check", "seeds", "policy")
 """Keys of a configuration that the figures show."""

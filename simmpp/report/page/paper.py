@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from simmpp.report.figures import FIGURES
-from simmpp.report.measured import CONCURRENT, RAY, Measured, Point
+from simmpp.common.files import Row
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
-from simmpp.report.reproduce import EXPERIMENTS, load_experiment
-from simmpp.sweeps.point import REFERENCE
-from simmpp.sweeps.tables import Row
+from simmpp.run.point import REFERENCE
+from simmpp.studies.nebel98.figures import FIGURES
+from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
+from simmpp.sweeps.ratios import CONCURRENT, RAY, Measured, Point
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from statistics import fmean
 
+from simmpp.common.files import Row
 from simmpp.report.page.arrangement import AXES, axes_of
 from simmpp.sweeps.profits import MEASURES, STATISTICS, profit_rows
-from simmpp.sweeps.tables import Row
 
 ACCOUNTS = {
     "compute": "compute_ps",

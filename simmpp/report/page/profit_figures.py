@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 
-from simmpp.report.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
+from simmpp.common.files import Row
+from simmpp.plot.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, slug, styles_of
-from simmpp.sweeps.tables import Row
 
 MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
 """A measure is shown along so many axes; the second has at least so many values, and at most so

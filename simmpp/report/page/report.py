@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import jinja2
+from markupsafe import Markup
+
+from simmpp.common.files import write_text
+from simmpp.common.units import counted
+from simmpp.plot.plotly_panels import drawn, script
 from simmpp.report.page import words
 from simmpp.report.page.accuracy import accuracy_figures
 from simmpp.report.page.arrangement import abscissas
@@ -16,16 +23,14 @@ from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.findings import sentences, wins
-from simmpp.report.page.folder import Folder
-from simmpp.report.page.interactive import drawn
+from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.profit_figures import Shown, profit_figures
-from simmpp.report.page.render import rendered
-from simmpp.report.verdict import DOES_NOT, HOLDS, IN_PART
-from simmpp.sweeps.tables import write_text
-from simmpp.units import counted
+from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.journal import is_at_work
+from simmpp.sweeps.sweep import RESULTS
 
 PAGE, FIGURES = "report.html", "figures"
 
@@ -165,3 +170,57 @@ def _first(points: Points) -> int:
     gains = [row["time_profit"] for row in points.profits]
     shown = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
     return max(shown, key=lambda n: float(gains[n]), default=0)
+
+
+# --- HTML from templates: everything that comes from rows is escaped ---
+
+
+ASSETS = "assets"
+
+
+def rendered(template: str, values: Mapping[str, Any]) -> str:
+    """A page that needs nothing else: styles, scripts and data are in it."""
+    loader = jinja2.PackageLoader(__name__.rpartition(".")[0], ASSETS)
+    environment = jinja2.Environment(
+        loader=loader,
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
+
+    def asset(name: str) -> Markup:
+        return Markup(environment.get_template(name).render())
+
+    return environment.get_template(template).render(**values, asset=asset, plotly=Markup(script()))
+
+
+# --- the page of a sweep while it runs: written again whenever its tables are ---
+
+
+LOOK_S = 1.0
+"""Seconds between two looks at the tables."""
+
+
+def follow(path: Path) -> Iterator[Folder]:
+    """Write the page of what is there, again and again; ends when no sweep works there any more.
+
+    Yields what each page shows; the last one reloads itself no more.
+    """
+    seen = None
+    while is_at_work(path):
+        results = path / RESULTS
+        written = results.stat().st_mtime_ns if results.is_file() else None
+        if written is not None and written != seen:
+            seen = written
+            yield _write(path, is_running=True)
+        time.sleep(LOOK_S)
+    yield _write(path, is_running=False)
+
+
+def _write(path: Path, *, is_running: bool) -> Folder:
+    folder = read_folder(path)
+    write_page(report_of(folder), is_running=is_running)
+    return folder

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from simmpp.report.curves import Scale
-from simmpp.report.figures import ON_EACH_PE, PERCENT
+from simmpp.plot.curves import Scale
+from simmpp.studies.nebel98.figures import ON_EACH_PE, PERCENT
 
 DATAFLOWS = {
     "object": "object dataflow",

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-from simmpp.engine.log import Sink
+from simmpp.engine.record.log import Sink
 from simmpp.machine.machine import Machine
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.timeline.slices import Part, Rows, Timeline, Window
-from simmpp.sweeps.point import PolicyRun
+from simmpp.run.point import PolicyRun
 
 SUFFIXES = (".json", ".json.gz", ".parquet")
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
-from simmpp.engine.log import EVENT_KINDS
+from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
+from simmpp.engine.record.log import EVENT_KINDS
 
 IDLE, PROBE = len(EVENT_KINDS), len(EVENT_KINDS) + 1
 SLICE_KINDS = (*EVENT_KINDS, "idle", "probe")

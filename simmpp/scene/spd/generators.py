@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.scene.spd import balls, gears, jacks, lattice, mountain, rings, tetra, tree
 
 MAX_OBJECTS = 1_000_000

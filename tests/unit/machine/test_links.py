@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from oracles.network import links
 
-from simmpp.machine.links import ROWS_PER_PE, link_towards
-from simmpp.machine.torus import hops
+from simmpp.machine.torus import ROWS_PER_PE, hops, link_towards
 
 Shape = tuple[int, int, int]
 shapes = st.tuples(*[st.integers(1, 7)] * 3)

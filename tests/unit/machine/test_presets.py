@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import UNLIMITED, CopyCost, TestCost
 from simmpp.machine.presets import OVERRIDDEN, load_preset, machine, preset_names
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.model.analytical import analytical, geometric, grouped, imbalances, permanent
 from simmpp.model.border import border_without_imbalance, borders, claims
 from simmpp.model.costs import Costs

@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import pytest
 
+from simmpp.config.config import config_from_mapping
 from simmpp.placement.place import draws, place
 from simmpp.placement.placement import Placement
-from simmpp.sweeps.config import config_from_mapping
-from simmpp.sweeps.workloads import workload_of
+from simmpp.run.inputs import workload_of
 
 MEMORIES = [
     {"fraction": 0.5},

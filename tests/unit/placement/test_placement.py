@@ -11,12 +11,12 @@ from builders import random_case, workload_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from simmpp.common.randomness import generator
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.placement.residents import resident_count
-from simmpp.streams import generator
 from simmpp.workload.workload import Workload
 
 OWNERS = ("bisection", "morton", "round_robin", "random")

@@ -9,10 +9,9 @@ from builders import random_case
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.placement.place import place
+from simmpp.model.synthetic import synthetic
+from simmpp.placement.place import place, rotated
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.rotated import rotated
-from simmpp.workload.synthetic import synthetic
 
 RULES = PlacementRules()
 fractions = st.lists(st.fractions(0, 1, max_denominator=20), min_size=1, max_size=6)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.errors import ConfigError, InputError, SceneError
+from simmpp.common.errors import ConfigError, InputError, SceneError
 from simmpp.scene.load import load_scene
 from simmpp.scene.nff import write_nff
 from simmpp.scene.spd.generators import nff

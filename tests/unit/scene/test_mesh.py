@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.boxes import scene_box
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.scene import Floats, Material, MeshPart, Scene

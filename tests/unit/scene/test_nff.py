@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simmpp.errors import SceneError
+from simmpp.common.errors import SceneError
 from simmpp.scene.nff import read_nff, write_nff
 from simmpp.scene.scene import (
     Camera,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Polygon
 from simmpp.scene.spd.generators import GENERATORS, find_generator, nff

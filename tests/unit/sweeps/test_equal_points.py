@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from simmpp.sweeps.config import config_from_mapping, with_key
+from simmpp.config.config import config_from_mapping, with_key
+from simmpp.run.inputs import workload_of
+from simmpp.run.point import make_point, run_point
+from simmpp.run.rows import numbers
 from simmpp.sweeps.plan import plan
-from simmpp.sweeps.point import make_point, run_point
-from simmpp.sweeps.rows import numbers
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.worker import run_task
-from simmpp.sweeps.workloads import workload_of
 
 SETTINGS = {
     "scene": "tetra:2",

@@ -5,15 +5,15 @@ from itertools import pairwise
 
 import pytest
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.config.axes import axes_of
+from simmpp.config.config import config_from_mapping
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.sweeps.axes import axes_of
-from simmpp.sweeps.config import config_from_mapping
+from simmpp.run.inputs import workload_of
+from simmpp.run.point import make_point
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.plan import plan
-from simmpp.sweeps.point import make_point
 from simmpp.sweeps.task import canonical
-from simmpp.sweeps.workloads import workload_of
 
 BASE = {"scene": "tetra:1", "picture": {"resolution": 4}, "policy": "ray"}
 

@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.errors import ConfigError
-from simmpp.sweeps.journal import FILE, Journal
-from simmpp.sweeps.outcome import Outcome
+from simmpp.common.errors import ConfigError
+from simmpp.sweeps.journal import FILE, Journal, Outcome
 
 IDENTITY = {"versions": {"numpy": "2.0"}, "config": {"processors": 8, "seeds": [0, 1]}}
 POINTS = {"points": 64 * "a"}

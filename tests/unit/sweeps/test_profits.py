@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from simmpp.common.files import Row
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.profits import best_policy, profit_columns, profit_rows
-from simmpp.sweeps.tables import Row
 
 
 def row(policy: str, seed: int, makespan_ps: int, messages: int, **more: object) -> Row:

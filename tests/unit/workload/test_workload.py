@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from simmpp.workload.synthetic import synthetic
+from simmpp.model.synthetic import synthetic
 from simmpp.workload.workload import frozen
 
 

@@ -7,6 +7,7 @@ import math
 import pytest
 from sweep_rows import failed, row
 
+from simmpp.common.files import Row
 from simmpp.report.page.contest import (
     ALONE,
     EQUAL,
@@ -19,7 +20,6 @@ from simmpp.report.page.contest import (
 )
 from simmpp.report.page.findings import sentences, span, wins
 from simmpp.report.page.points import points_of
-from simmpp.sweeps.tables import Row
 
 T_2 = 4.302652729911275
 """Student's t of 97.5 % with 2 degrees of freedom (any table)."""

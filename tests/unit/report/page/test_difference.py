@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from sweep_rows import failed, row, sweep
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import Row
 from simmpp.report.page.comparison import reasons, verdict
 from simmpp.report.page.difference import (
     BEYOND,
@@ -21,7 +22,6 @@ from simmpp.report.page.difference import (
     summary,
 )
 from simmpp.report.page.folder import Folder
-from simmpp.sweeps.tables import Row
 
 
 def folder(rows: list[Row], *further: str, **record: object) -> Folder:

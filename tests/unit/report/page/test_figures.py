@@ -13,15 +13,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sweep_rows import failed, row, sweep
 
-from simmpp.report.bars import Bars
-from simmpp.report.curves import Panel
+from simmpp.common.files import Row
+from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.bar_figures import bar_figures
 from simmpp.report.page.figure import Figure
-from simmpp.report.page.interactive import drawn
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
 from simmpp.report.page.profit_figures import PROFITS, Shown, profit_figures
-from simmpp.sweeps.tables import Row
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
 VALUES: dict[str, Any] = {

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from sweep_rows import failed, row, sweep, written
 
-from simmpp.errors import ConfigError
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import write_csv
+from simmpp.methods.columns import result_columns
 from simmpp.report.page.folder import read_folder
-from simmpp.report.reproduce import EXPERIMENTS
-from simmpp.sweeps.columns import result_columns
-from simmpp.sweeps.rows import in_order
-from simmpp.sweeps.tables import write_csv
+from simmpp.run.rows import in_order
+from simmpp.studies.nebel98.reproduce import EXPERIMENTS
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
 

@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 from sweep_rows import sweep, written
 
-from simmpp.report.page import live
-from simmpp.sweeps import showing
+from simmpp.report.page import report as live
 from simmpp.sweeps import sweep as running
-from simmpp.sweeps.journal import FILE, Journal, is_at_work
-from simmpp.sweeps.outcome import Outcome
+from simmpp.sweeps import sweep as showing
+from simmpp.sweeps.journal import FILE, Journal, Outcome, is_at_work
 
 
 def test_a_folder_is_at_work_as_long_as_its_journal_is_held(tmp_path: Path) -> None:

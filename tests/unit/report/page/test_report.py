@@ -11,19 +11,19 @@ from typing import Any
 import pytest
 from sweep_rows import failed, row, sweep, written
 
-from simmpp.report.figures import FIGURES
+from simmpp.common.files import write_csv
+from simmpp.methods.columns import NUMBERS, result_columns
+from simmpp.plot.plotly_panels import script
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.folder import Folder, read_folder
-from simmpp.report.page.interactive import script
+from simmpp.report.page.overlay import write_stills
 from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
-from simmpp.report.page.stills import write_stills
-from simmpp.report.rungs import bench_columns
-from simmpp.sweeps.columns import NUMBERS, result_columns
+from simmpp.studies.bench.errors import bench_columns
+from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows
-from simmpp.sweeps.tables import write_csv
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
 HOSTILE = '</script><script>document.title="broken"</script>" \' & {{ 7 * 7 }} <!--'

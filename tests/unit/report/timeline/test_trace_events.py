@@ -16,11 +16,12 @@ from builders import Case, cases, placement_of, workload_of
 from by_hand import MACHINE, OBJECT
 from hypothesis import given, settings
 
-from simmpp.engine import start, state
+from simmpp.engine import initial as start
+from simmpp.engine import state
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.report.timeline.recorder import TimelineRecorder
 from simmpp.report.timeline.slices import Window
-from simmpp.sweeps.point import PolicyRun
+from simmpp.run.point import PolicyRun
 
 WORKLOAD = workload_of(primaries=1, itineraries=[[0, 1]], object_bytes=(40, 50))
 CASE = Case(WORKLOAD, MACHINE, placement_of((0, 1), [0], 2), OBJECT)

@@ -1,0 +1,186 @@
+"""How simmpp compiles: numba, IEEE arithmetic as written, kept on disk between runs.
+
+numba notices that a function's own file has changed, but not the files of the functions that it
+calls or of the constants that it reads. So compiled code is kept in a folder named after the source
+of a module and of all that it imports: what is stale is never found.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from platformdirs import user_cache_path
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+PACKAGE = __name__.partition(".")[0]
+
+
+def njit(function: Function) -> Function:
+    """Compile ``function`` on first use; no fastmath: results must not depend on the CPU.
+
+    It may make arrays, whoever calls it: left alone, numba would take that from the first caller.
+    """
+    with _kept_for(function) as kept:
+        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=True)(function)
+
+
+def njit_reading(function: Function) -> Function:
+    """:func:`njit` for functions that make no arrays: their calls count no references.
+
+    A search of a tree that calls one for each box takes a third of the time, a run of the engines,
+    all of whose arrays are made beforehand, four fifths.
+    """
+    with _kept_for(function) as kept:
+        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
+
+
+def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
+    """Compile a function of that numba signature which compiled code calls by its address."""
+
+    def compile_now(function: Callable[..., object]) -> object:
+        with _kept_for(function) as kept:
+            return numba.cfunc(signature, cache=kept)(function)
+
+    return compile_now
+
+
+@contextmanager
+def _kept_for(function: Callable[..., object]) -> Iterator[bool]:
+    """Tell numba where to keep what is decorated here; False if nothing can be kept.
+
+    Left alone, numba would then keep it beside the source, under no digest. Other packages'
+    functions are kept where they were. What is typed into an interactive session has no source
+    whose digest could name a folder.
+    """
+    before = numba.config.CACHE_DIR
+    kept = _file(function.__module__) is not None
+    if kept:
+        folder = _folder(function.__module__)
+        numba.config.CACHE_DIR = str(folder)
+        kept = _is_writable(folder)
+    try:
+        yield kept
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def cache_folder() -> Path:
+    """Where workloads and compiled code are kept: SIMMPP_CACHE, XDG_CACHE_HOME or the user's."""
+    chosen, xdg = os.environ.get("SIMMPP_CACHE"), os.environ.get("XDG_CACHE_HOME")
+    if chosen:
+        return Path(chosen)
+    return Path(xdg) / "simmpp" if xdg else user_cache_path("simmpp", appauthor=False)
+
+
+def source_digest(*modules: str) -> str:
+    """Hexadecimal hash of the source of modules and of all that they import of this package."""
+    digest = hashlib.sha256()
+    for name in sorted(set[str]().union(*map(_closure, modules))):
+        digest.update(_source(name).encode())
+    return digest.hexdigest()[:16]
+
+
+def keeps_code() -> bool:
+    """Can machine code be kept for the next run?"""
+    return _is_writable(_folder(__name__))
+
+
+def is_compiled(module: str) -> bool:
+    """Has machine code of this module, as it is now, been kept by an earlier run?"""
+    return any(_folder(module).rglob("*.nbi"))
+
+
+def _folder(module: str) -> Path:
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    root = Path(chosen) if chosen else cache_folder() / "compiled"
+    return root / source_digest(module)
+
+
+def _closure(module: str) -> set[str]:
+    """The module and all modules of this package that it imports, directly or not."""
+    closure: set[str] = set()
+    pending = [module]
+    while pending:
+        name = pending.pop()
+        if name not in closure:
+            closure.add(name)
+            pending.extend(_imports(_source(name)))
+    return closure
+
+
+def _imports(source: str) -> Iterator[str]:
+    """Modules of this package that a source imports, wherever in it: functions import, too.
+
+    What only type checkers read is left out.
+    """
+    pending: list[ast.AST] = [ast.parse(source)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            continue
+        pending.extend(ast.iter_child_nodes(node))
+        if isinstance(node, ast.Import):
+            yield from filter(_is_ours, (alias.name for alias in node.names))
+        elif isinstance(node, ast.ImportFrom) and _is_ours(node.module or ""):
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from {name if _file(name) else str(node.module) for name in names}
+
+
+def _is_ours(module: str) -> bool:
+    return module.partition(".")[0] == PACKAGE
+
+
+@cache
+def _source(module: str) -> str:
+    """The text of one module. Raise a ModuleNotFoundError if it has no file.
+
+    A digest that left it out would find stale code and stale workloads for ever.
+    """
+    file = _file(module)
+    if file is None:
+        raise ModuleNotFoundError(f"no file holds the source of {module}")
+    return file.read_text(encoding="utf-8")
+
+
+@cache
+def _file(module: str) -> Path | None:
+    """Where a module's source is; others than this package's have to be imported already."""
+    if _is_ours(module):
+        path = Path(__file__).parents[1].joinpath(*module.split(".")[1:])
+        files = (path.with_suffix(".py"), path / "__init__.py")
+        return next((file for file in files if file.is_file()), None)
+    loaded = getattr(sys.modules.get(module), "__file__", None)
+    return Path(loaded) if loaded else None
+
+
+# --- calling compiled functions from Python many times a second ---
+
+
+def entry_point(function: Any, *arguments: Any) -> Callable[..., Any]:
+    """The machine code of ``function`` for arguments of these types, callable from Python.
+
+    numba's own dispatch works out the types of its arguments at every call, about a microsecond
+    for the one record array that holds a state: as long as a short activity itself takes.
+    Arguments of other types must never be passed.
+    """
+    signature = tuple(numba.typeof(argument) for argument in arguments)
+    function.compile(signature)
+    return function.overloads[signature].entry_point

@@ -1,0 +1,13 @@
+"""Modules that others name without importing them: whoever moves one changes it here."""
+
+from __future__ import annotations
+
+TRACER = "simmpp.workload.trace.tracer"
+CANDIDATES = "simmpp.workload.trace.itineraries"
+PLACEMENT = "simmpp.placement.place"
+METHODS = "simmpp.methods.table"
+ENGINE = "simmpp.engine.compiled_engine"
+STEP = "simmpp.engine.pe.step"
+PRELOAD = "simmpp.sweeps.preload"
+
+NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, STEP, PRELOAD)

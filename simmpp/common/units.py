@@ -1,0 +1,192 @@
+"""Quantities with units: text from users to exact integers (ps, bytes, bytes per second), and back.
+
+No float holds a quantity: text becomes a fraction, and the fraction an integer, once.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import cache
+from typing import TYPE_CHECKING
+
+from simmpp.common.errors import ConfigError
+
+if TYPE_CHECKING:
+    import pint
+
+UNLIMITED = 0
+"""Bandwidth (bytes per second) of a copy or link that takes no time."""
+
+LONGEST_PS = 10 * 10**12
+"""Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
+MOST_BYTES = 10**17
+LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 9 * 10**15
+
+A_TIME = "a time such as '12 us'"
+A_SIZE = "a size such as '64 MB'"
+A_BANDWIDTH = "a bandwidth such as '340 MB/s', or 'unlimited'"
+A_SHARE = "a share from 0 to 1, such as 0.1, 10% or 1/64"
+
+_DEFINITIONS = [
+    "second = [time] = s",
+    "minute = 60 * second = min",
+    "byte = [information] = B",
+    "pico- = 1e-12 = p-",
+    "nano- = 1e-9 = n-",
+    "micro- = 1e-6 = u- = µ- = μ-",
+    "milli- = 1e-3 = m-",
+    "kilo- = 1e3 = k-",
+    "mega- = 1e6 = M-",
+    "giga- = 1e9 = G-",
+    "tera- = 1e12 = T-",
+    "kibi- = 2**10 = Ki-",
+    "mebi- = 2**20 = Mi-",
+    "gibi- = 2**30 = Gi-",
+    "tebi- = 2**40 = Ti-",
+]
+
+# Neither signs, operators nor long exponents: pint would evaluate them, Fraction expand them.
+_NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
+_SHARE = re.compile(rf"\s*({_NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Fraction]:
+    """Pint with these units only and exact fractions; its own list knows barns, not bits."""
+    import pint  # takes a quarter of a second
+
+    return pint.UnitRegistry(_DEFINITIONS, non_int_type=Fraction)
+
+
+@cache
+def _in(text: str, unit: str) -> Fraction | None:
+    """``text`` as an exact number of ``unit``; None if it isn't such a quantity."""
+    import pint
+
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        return None
+    try:
+        return Fraction(_registry().Quantity(Fraction(match[1]), match[2]).to(unit).magnitude)
+    except (pint.PintError, AttributeError):
+        return None
+
+
+def _is_zero(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value == 0
+
+
+def _quantity(value: object, unit: str, expected: str, most: int) -> Fraction:
+    if _is_zero(value):
+        return Fraction(0)
+    number = _in(value, unit) if isinstance(value, str) else None
+    if number is None:
+        raise ConfigError(f"value {shown(value)}: expected {expected}")
+    if number > most:
+        raise ConfigError(
+            f"value {shown(value)}: expected {expected}, at most {_bound(most, unit)}"
+        )
+    return number
+
+
+def _bound(most: int, unit: str) -> str:
+    if unit == "picosecond":
+        return format_ps(most)
+    return format_bytes(most) if unit == "byte" else format_bytes_per_s(most)
+
+
+def half_up(number: Fraction) -> int:
+    """The nearest integer; halves go up."""
+    return (2 * number.numerator + number.denominator) // (2 * number.denominator)
+
+
+def picoseconds(value: object, most_ps: int = LONGEST_PS) -> int:
+    """``"12 us"`` -> 12000000; halves of a picosecond go up, 0 needs no unit.
+
+    Raises ConfigError for anything else but a time up to ``most_ps``, 10 s for the cost of one
+    thing.
+    """
+    return half_up(_quantity(value, "picosecond", A_TIME, most_ps))
+
+
+def byte_count(value: object) -> int:
+    """``"64 MB"`` -> 64000000, ``"1 KiB"`` -> 1024; 0 needs no unit.
+
+    Raises ConfigError for anything else but a whole number of bytes.
+    """
+    number = _quantity(value, "byte", A_SIZE, MOST_BYTES)
+    if number.denominator != 1:
+        raise ConfigError(f"value {shown(value)}: expected a whole number of bytes")
+    return number.numerator
+
+
+def bytes_per_second(value: object) -> int:
+    """``"340 MB/s"`` -> 340000000, ``"unlimited"`` -> UNLIMITED.
+
+    Raises ConfigError for anything else but at least 1 kB/s: a bandwidth of nothing never ends.
+    """
+    if value == "unlimited":
+        return UNLIMITED
+    rate = half_up(_quantity(value, "byte / second", A_BANDWIDTH, MOST_BYTES_PER_S))
+    if rate < LEAST_BYTES_PER_S:
+        raise ConfigError(f"value {shown(value)}: expected {A_BANDWIDTH}, at least 1 kB/s")
+    return rate
+
+
+def share(value: object) -> Fraction:
+    """``"12%"``, ``0.12`` or ``"3/25"`` -> Fraction(3, 25), exactly.
+
+    Raises ConfigError outside 0 ... 1. A float means its shortest decimal text: 0.1 is 1/10.
+    """
+    text = str(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
+    if isinstance(value, Fraction):
+        text = f"{value.numerator}/{value.denominator}"
+    match = _SHARE.fullmatch(text) if isinstance(text, str) else None
+    divisor = (100 if match[2] else int(match[3] or 1)) if match else 0
+    number = Fraction(match[1]) / divisor if match and divisor else None
+    if number is None or number > 1:
+        raise ConfigError(f"value {shown(value)}: expected {A_SHARE}")
+    return number
+
+
+def shown(value: object) -> str:
+    """``value`` as one short piece of a line: text quoted, the rest as YAML writes it."""
+    if value is None:
+        return "empty"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int) and value.bit_length() > 200:
+        return "too many digits"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _with_prefix(number: int, units: list[tuple[str, int]]) -> str:
+    unit, size = next((u for u in units if number >= u[1]), units[-1])
+    digits = f"{number / size:.6g}"
+    return f"{digits} {unit}"
+
+
+def format_ps(time_ps: int) -> str:
+    """12000000 -> ``"12 us"``: for people, up to six digits."""
+    units = [("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1)]
+    return _with_prefix(time_ps, units) if time_ps else "0 s"
+
+
+def format_bytes(size_bytes: int) -> str:
+    """64000000 -> ``"64 MB"``: for people, up to six digits."""
+    units = [("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1)]
+    return _with_prefix(size_bytes, units)
+
+
+def format_bytes_per_s(rate: int) -> str:
+    """340000000 -> ``"340 MB/s"``; UNLIMITED -> ``"unlimited"``."""
+    return "unlimited" if rate == UNLIMITED else format_bytes(rate) + "/s"
+
+
+def counted(number: int, noun: str) -> str:
+    """``"1 mesh"``, ``"2 meshes"``."""
+    ending = "" if number == 1 else "es" if noun.endswith("sh") else "s"
+    return f"{number} {noun}{ending}"

@@ -1,0 +1,182 @@
+"""YAML text to plain Python data with the line of every key: the only module that knows YAML.
+
+Only the plain part of YAML 1.2 is read: mappings, lists, text, numbers, true, false, null. So
+``1e-6`` is a number, while ``on`` and ``12:30`` are text. Anchors, aliases and tags are refused: a
+configuration has no use for them, and a few lines of aliases can stand for gigabytes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    DocumentEndEvent,
+    DocumentStartEvent,
+    Event,
+    MappingEndEvent,
+    MappingStartEvent,
+    NodeEvent,
+    ScalarEvent,
+    SequenceEndEvent,
+    SequenceStartEvent,
+    StreamEndEvent,
+    StreamStartEvent,
+)
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import refuse_special
+
+KeyPath = tuple[str | int, ...]
+
+MOST_CHARACTERS = 1_000_000
+DEEPEST = 20
+
+_INTEGER = re.compile(r"[-+]?[0-9]{1,30}")
+_FLOAT = re.compile(
+    r"[-+]?(?:[0-9]{1,30}\.?[0-9]{0,30}|\.[0-9]{1,30})(?:[eE][-+]?[0-9]{1,3})?|[-+]?\.inf|\.nan",
+    re.IGNORECASE,
+)
+_CONSTANTS: dict[str, bool | None] = {"true": True, "false": False, "null": None, "~": None}
+
+
+@dataclass
+class Document:
+    """The data of one YAML text, and where each key stands."""
+
+    data: object
+    where: str
+    """The file's name, for errors."""
+    lines: dict[KeyPath, int] = field(default_factory=dict)
+    """Line of every key and list entry, by its path."""
+
+
+def read_yaml(path: Path) -> Document:
+    """Read a YAML file.
+
+    Raises ConfigError, one line, if the file can't be read or isn't plain YAML.
+    """
+    try:
+        refuse_special(path)
+        with open(path, encoding="utf-8") as file:
+            text = file.read(MOST_CHARACTERS + 1)
+    except UnicodeDecodeError:
+        raise ConfigError("expected UTF-8 text", where=str(path)) from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise ConfigError(f"can't read the file: {reason}", where=str(path)) from None
+    return parse_yaml(text, str(path))
+
+
+def parse_yaml(text: str, where: str = "") -> Document:
+    """Parse YAML text; ``where`` names it in errors.
+
+    Raises ConfigError, one line, if the text isn't plain YAML or repeats a key.
+    """
+    if len(text) > MOST_CHARACTERS:
+        raise ConfigError(f"expected at most {MOST_CHARACTERS} characters", where=where)
+    document = Document(None, where)
+    try:
+        _Reader(document, _events(text)).read()
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        problem = " ".join(str(error.problem or error.context or "unreadable").split())
+        line = mark.line + 1 if mark else None
+        raise ConfigError(f"broken YAML: {problem}", where=where, line=line) from None
+    except YAMLError as error:
+        problem = " ".join(str(error).split())
+        raise ConfigError(f"broken YAML: {problem}", where=where) from None
+    return document
+
+
+def _events(text: str) -> Iterator[Event]:
+    try:
+        yield from YAML(typ="safe", pure=True).parse(text)
+    except YAMLError:
+        raise
+    except Exception as error:  # the parser trips over some texts, e.g. "\\U99999999"
+        raise YAMLError(f"unreadable ({error})") from None
+
+
+class _Reader:
+    """Builds the data of a document from the parser's events."""
+
+    def __init__(self, document: Document, events: Iterator[Event]) -> None:
+        self.document, self.events = document, events
+
+    def read(self) -> None:
+        event = next(self.events)
+        while isinstance(event, StreamStartEvent | DocumentStartEvent):
+            event = next(self.events)
+        if isinstance(event, StreamEndEvent):
+            return
+        self.document.data = self.node(event, ())
+        while not isinstance(event, StreamEndEvent):
+            event = next(self.events)
+            if not isinstance(event, DocumentEndEvent | StreamEndEvent):
+                raise self.error("expected one document", event)
+
+    def node(self, event: Event, path: KeyPath) -> object:
+        self.document.lines.setdefault(path, _line(event))
+        self.refuse_fancy(event)
+        if len(path) > DEEPEST:
+            raise self.error(f"nested more than {DEEPEST} deep", event)
+        if isinstance(event, MappingStartEvent):
+            return self.mapping(path)
+        if isinstance(event, SequenceStartEvent):
+            return self.sequence(path)
+        if isinstance(event, ScalarEvent):
+            return _plain(event.value) if event.style is None else event.value
+        raise self.error("expected a value", event)
+
+    def mapping(self, path: KeyPath) -> dict[str, object]:
+        data: dict[str, object] = {}
+        while not isinstance(event := next(self.events), MappingEndEvent):
+            self.refuse_fancy(event)
+            if not isinstance(event, ScalarEvent):
+                raise self.error("expected a plain key", event)
+            key = event.value
+            here = (*path, key)
+            if key in data:
+                first = self.document.lines[here]
+                raise self.error(f"duplicate key {key!r}, first on line {first}", event)
+            self.document.lines[here] = _line(event)
+            data[key] = self.node(next(self.events), here)
+        return data
+
+    def sequence(self, path: KeyPath) -> list[object]:
+        data: list[object] = []
+        while not isinstance(event := next(self.events), SequenceEndEvent):
+            data.append(self.node(event, (*path, len(data))))
+        return data
+
+    def refuse_fancy(self, event: Event) -> None:
+        if isinstance(event, AliasEvent) or (isinstance(event, NodeEvent) and event.anchor):
+            raise self.error("anchors and aliases (&name, *name) are not supported", event)
+        if tag := getattr(event, "ctag", None):
+            raise self.error(f"tags are not supported: {str(tag)!r}", event)
+
+    def error(self, problem: str, event: Event) -> ConfigError:
+        return ConfigError(problem, where=self.document.where, line=_line(event))
+
+
+def _line(event: Event) -> int:
+    return int(event.start_mark.line) + 1
+
+
+def _plain(text: str) -> object:
+    """An unquoted scalar, by the core schema of YAML 1.2 (decimal numbers only)."""
+    if text == "":
+        return None
+    if text.lower() in _CONSTANTS:
+        return _CONSTANTS[text.lower()]
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    if _FLOAT.fullmatch(text):
+        return float(re.sub(r"\.(?=inf|nan)", "", text.lower()))
+    return text

@@ -1,0 +1,233 @@
+"""From YAML text and ``--set`` to a checked configuration, and what a run needs of it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.units import shown
+from simmpp.common.yamlfile import KeyPath, read_yaml
+from simmpp.config.axes import Axis, axes_of
+from simmpp.config.overrides import Places, override, set_key
+from simmpp.config.scene import FILES
+from simmpp.config.settings import PolicySettings, Settings
+from simmpp.machine.machine import Machine
+from simmpp.machine.presets import machine, torus_shape
+from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
+from simmpp.policy.parameters import LoadInfo, PolicyParameters
+from simmpp.workload.exchange.exchange import is_workload
+from simmpp.workload.picture import Picture, Samples
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a configuration was made from, so that others can be made with some keys changed."""
+
+    data: dict[str, Any]
+    places: Places
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked configuration."""
+
+    settings: Settings
+    folder: Path
+    """Where relative scene files are looked for."""
+    source: Source | None = field(default=None, repr=False, compare=False)
+    """Kept where points of a sweep are still to be made of it."""
+
+    @property
+    def processors(self) -> int:
+        """Number of PEs."""
+        return self.settings.processors
+
+    @property
+    def scene_spec(self) -> dict[str, object]:
+        """What ``load_scene`` takes (or ``workload``), with file names that hold from anywhere."""
+        spec = self.settings.scene.model_dump(exclude_none=True)
+        for key in FILES:
+            if key in spec:
+                spec[key] = str(self.folder / spec[key])
+        return spec
+
+    @property
+    def picture(self) -> Picture:
+        """What is traced."""
+        chosen = self.settings.picture
+        return Picture(
+            resolution=chosen.resolution,
+            samples=cast(Samples, chosen.samples),
+            max_depth=chosen.max_depth,
+            shadows=chosen.shadows,
+            reflection=chosen.reflection,
+            refraction=chosen.refraction,
+        )
+
+    def machine_for(self, processors: int) -> Machine:
+        """The machine with that many PEs.
+
+        Raises ConfigError if the shape that the configuration gives has another number.
+        """
+        return machine(self.settings.machine.preset, self.settings.machine, processors)
+
+    @property
+    def memory(self) -> Memory:
+        """Memory of one PE."""
+        chosen = self.settings.memory
+        return Memory(
+            fraction=chosen.fraction,
+            bytes=chosen.bytes,
+            residents=cast(Residents, chosen.residents),
+            transient=chosen.transient,
+        )
+
+    @property
+    def placement_rules(self) -> PlacementRules:
+        """How objects and pixels are dealt."""
+        chosen = self.settings.placement
+        return PlacementRules(cast(Owners, chosen.owners), cast(Pixels, chosen.pixels))
+
+    @property
+    def policies(self) -> tuple[PolicyParameters, ...]:
+        """The policies named, in their order."""
+        return tuple(map(_parameters, self.settings.policy))
+
+
+def _parameters(chosen: PolicySettings) -> PolicyParameters:
+    info = chosen.load_info
+    return PolicyParameters(
+        name=chosen.name,
+        label=chosen.label or "",
+        min_load=chosen.min_load,
+        batch=chosen.batch,
+        ask_at_least=chosen.ask_at_least,
+        load_info=cast(LoadInfo, info if isinstance(info, str) else "piggyback"),
+        refresh_ps=None if isinstance(info, str) else info["refresh"],
+        merge_requests=chosen.merge_requests,
+    )
+
+
+def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
+    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+
+    Raises ConfigError, one line with file, line, key, value and what was expected.
+    """
+    if is_workload(str(path)):
+        hint = f"expected a configuration (YAML); `simmpp workload {path}` lists these rays"
+        raise ConfigError(hint, where=str(path))
+    document = read_yaml(Path(path))
+    where = document.where
+    if document.data is None:
+        raise ConfigError("the file is empty: expected at least the key 'scene'", where=where)
+    if not isinstance(document.data, dict):
+        raise ConfigError("expected keys with values, such as 'scene: mountain:5'", where=where)
+    places: Places = {key: (where, line) for key, line in document.lines.items()}
+    for assignment in overrides:
+        override(document.data, assignment, places)
+    return _checked(document.data, places, Path(path).parent)
+
+
+def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] = ()) -> Config:
+    """Check a configuration given as Python data with the keys of the YAML file.
+
+    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+
+    Raises ConfigError, one line with key, value and what was expected.
+    """
+    if not isinstance(mapping, Mapping):
+        raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
+    data = copy.deepcopy(dict(mapping))
+    places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
+    for assignment in overrides:
+        override(data, assignment, places)
+    return _checked(data, places, Path())
+
+
+def with_key(config: Config, key: str, value: object) -> Config:
+    """The same configuration and sweep, with one dotted key set."""
+    if config.source is None:
+        raise ValueError("expected a configuration that keeps its source")
+    data, places = copy.deepcopy(config.source.data), dict(config.source.places)
+    set_key(data, key, value, places, ("", None))
+    return _checked(data, places, config.source.folder)
+
+
+def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
+    """The configuration, once it and all values that are swept are found right."""
+    settings = structure(Settings, data, places)
+    config = Config(settings, _scene_folder(places, folder), Source(data, places, folder))
+    axes = axes_of(settings.sweep)
+    first = dict.fromkeys(axes, 0)
+    point_at(config, axes, first)
+    for name, axis in axes.items():
+        for n in range(1, len(axis)):
+            point_at(config, axes, {**first, name: n})
+    return config
+
+
+def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]) -> Config:
+    """The configuration of one combination: ``chosen`` is the number of the choice of each axis.
+
+    Raises ConfigError where the values do not go together.
+    """
+    assignments = [
+        (key, value, ("sweep", name, n))
+        for name, n in chosen.items()
+        for key, value in axes[name][n].assignments.items()
+    ]
+    point = changed(config, sorted(assignments, key=lambda each: each[0].count(".")))
+    settings, source = point.settings, point.source
+    try:
+        torus_shape(settings.processors, settings.machine.shape)
+    except ConfigError as error:
+        places = source.places if source else {}
+        raise misplaced(("machine", "shape"), error.problem, places) from None
+    return point
+
+
+def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) -> Config:
+    """The configuration without its sweep, and with dotted keys set one after the other.
+
+    Each comes with the path of what set it in the configuration's file.
+    """
+    if config.source is None:
+        raise ValueError("expected a configuration that keeps its source")
+    given, places, folder = config.source.data, config.source.places, config.source.folder
+    data = copy.deepcopy({key: value for key, value in given.items() if key != "sweep"})
+    own = {path: place for path, place in places.items() if path[:1] != ("sweep",)}
+    for key, value, path in assignments:
+        set_key(data, key, copy.deepcopy(value), own, _nearest(places, path))
+    settings = structure(Settings, data, own)
+    return Config(settings, _scene_folder(own, folder), Source(data, own, folder))
+
+
+def _nearest(places: Places, path: KeyPath) -> Place:
+    known = (path[:n] for n in range(len(path), -1, -1))
+    return next((places[found] for found in known if found in places), ("", None))
+
+
+def _scene_folder(places: Places, folder: Path) -> Path:
+    """Files named in a configuration lie beside it; those named by --set, here."""
+    settings = [_nearest(places, ("scene", key))[0] for key in FILES]
+    return Path() if any(where.startswith("--set ") for where in settings) else folder
+
+
+def described(config: Config) -> dict[str, Any]:
+    """The configuration with its defaults, as JSON can hold it; shares as text, times in ps."""
+    plain: dict[str, Any] = _plain(config.settings.model_dump(exclude_none=True))
+    return plain
+
+
+def _plain(value: object) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(child) for key, child in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(child) for child in value]
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)

@@ -1,0 +1,1 @@
+"""The arrays of a run: one layout, views, hash tables."""

@@ -1,0 +1,86 @@
+"""Do the parts of a run fit together? Compiled code does not look where it reads."""
+
+from __future__ import annotations
+
+from dataclasses import astuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.errors import ConfigError, WorkloadError
+from simmpp.common.validate import MOST_COUNT, require_whole, require_word
+from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.machine import Machine
+from simmpp.machine.torus import CONTENTIONS
+from simmpp.placement.placement import Placement
+from simmpp.workload.workload import Workload
+
+
+def check_fit(workload: Workload, machine: Machine, placement: Placement) -> None:
+    """Raise WorkloadError or ConfigError for what a run would trip over.
+
+    Only what the engines rely on, in milliseconds; files are checked whole when they are read.
+    """
+    _check_workload(workload)
+    _check_machine(machine)
+    _check_placement(workload, machine, placement)
+
+
+def _check_workload(workload: Workload) -> None:
+    n, n_objects = workload.n_rays, workload.n_objects
+    fits = {
+        "child_offsets": _is_cut(workload.child_offsets, n, workload.n_primaries, n),
+        "itinerary_offsets": _is_cut(workload.itinerary_offsets, n, 0, workload.n_tests),
+        "itinerary_objects": _lie_below(workload.itinerary_objects, n_objects),
+        "object_bytes": len(workload.object_bytes) == n_objects,
+        "object_triangles": len(workload.object_triangles) == n_objects,
+        "object_test_ps": len(workload.object_test_ps) in (0, n_objects),
+    }
+    for name, does in fits.items():
+        if not does:
+            raise WorkloadError(f"{name} does not fit the rays and objects", where=workload.name)
+
+
+def _check_machine(machine: Machine) -> None:
+    numbers: list[object] = list(astuple(machine))
+    while numbers:
+        value = numbers.pop()
+        if isinstance(value, tuple):
+            numbers.extend(value)
+        elif not isinstance(value, str | dict):
+            require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
+    require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
+    if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
+        raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
+
+
+def _check_placement(workload: Workload, machine: Machine, placement: Placement) -> None:
+    nb, n_objects = machine.processors, workload.n_objects
+    if placement.processors != nb:
+        raise ConfigError(f"the placement is for {placement.processors} PEs, the machine has {nb}")
+    n_replicas = len(placement.replica_objects)
+    fits = {
+        "owners": len(placement.owners) == n_objects and _lie_below(placement.owners, nb),
+        "replica_offsets": _is_cut(placement.replica_offsets, nb, 0, n_replicas),
+        "replica_objects": _lie_below(placement.replica_objects, n_objects),
+        "pixel_pes": len(placement.pixel_pes) == workload.n_primaries
+        and _lie_below(placement.pixel_pes, nb),
+        "transient": placement.transient >= 0,
+    }
+    for name, does in fits.items():
+        if not does:
+            raise ConfigError(
+                f"the placement's {name} does not fit {nb} PEs, {n_objects} objects "
+                f"and {workload.n_primaries} primary rays"
+            )
+
+
+def _is_cut(offsets: NDArray[np.signedinteger], n: int, first: int, last: int) -> bool:
+    """Do n + 1 offsets cut the numbers first ... last - 1 into n parts?"""
+    if len(offsets) != n + 1 or offsets[0] != first or offsets[-1] != last:
+        return False
+    return bool((offsets[1:] >= offsets[:-1]).all())
+
+
+def _lie_below(ids: NDArray[np.signedinteger], end: int) -> bool:
+    return len(ids) == 0 or bool(ids.min() >= 0 and ids.max() < end)

@@ -1,0 +1,1 @@
+"""What a PE does: the model, called by every engine."""

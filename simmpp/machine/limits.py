@@ -1,0 +1,90 @@
+"""How long a machine works on a workload, whoever does it, and whether its clock can hold that."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from simmpp.common.errors import ConfigError
+from simmpp.machine.machine import Machine
+from simmpp.machine.transfer import PS_PER_S
+from simmpp.workload.workload import Workload
+
+CLOCK_LIMIT_PS = 1 << 62
+"""The clock is int64 picoseconds; it is stopped at half of them (53 days), before it can wrap."""
+MOST_BYTES = 1 << 62
+"""Counters of bytes are int64 too."""
+
+
+def total_compute_ps(workload: Workload, machine: Machine) -> int:
+    """What one PE alone, with everything in memory, would take: T(1).
+
+    Raises ConfigError if that is beyond the clock.
+    """
+    tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
+    cost_ps = machine.test.of_objects(workload, np.float64)
+    # In float64 nothing wraps; once the sum is known to fit, it is made exactly.
+    if float(tests @ cost_ps) + float(workload.n_rays) * machine.ray_ps >= CLOCK_LIMIT_PS:
+        raise beyond_the_clock()
+    return int(tests @ machine.test.of_objects(workload)) + workload.n_rays * machine.ray_ps
+
+
+def check_counters(workload: Workload, machine: Machine) -> None:
+    """Raise ConfigError if a run could wrap its clock or its counters of bytes.
+
+    The engines look at the clock at every instant of a PE; here is seen to it that no single
+    activity and no single flight takes half of the clock. Bounds, in Python's integers.
+    """
+    longest_test_ps = float(machine.test.of_objects(workload, np.float64).max(initial=0))
+    bound_ps = workload.n_tests * longest_test_ps + workload.n_rays * machine.ray_ps
+    if bound_ps >= CLOCK_LIMIT_PS:
+        total_compute_ps(workload, machine)  # looks closer
+    if max(_longest_dispatch_ps(workload, machine), _longest_flight_ps(workload, machine)) > (
+        CLOCK_LIMIT_PS // 2
+    ):
+        raise beyond_the_clock()
+    each_bytes = 2 * machine.header_bytes + machine.request_bytes + machine.ray_bytes
+    sent_bytes = workload.n_tests * (each_bytes + _largest_object_bytes(workload))
+    held_bytes = float(workload.object_bytes.sum(dtype=np.float64))
+    if max(sent_bytes, held_bytes + workload.n_rays * machine.ray_bytes) >= MOST_BYTES:
+        raise ConfigError(
+            f"the bytes sent or held could exceed {MOST_BYTES}: expected smaller rays and objects"
+        )
+
+
+def _largest_object_bytes(workload: Workload) -> int:
+    return int(workload.object_bytes.max(initial=0))
+
+
+def _largest_payload_bytes(workload: Workload, machine: Machine) -> int:
+    all_rays_bytes = workload.n_rays * machine.ray_bytes
+    return max(_largest_object_bytes(workload), all_rays_bytes, machine.request_bytes)
+
+
+def _longest_dispatch_ps(workload: Workload, machine: Machine) -> int:
+    """No dispatch sends more than a request per ray and object, and a batch and a load per PE."""
+    messages = workload.n_rays + workload.n_objects + 2 * machine.processors
+    costs = (*machine.pack, *machine.unpack)
+    startup_ps = machine.send_startup_ps + machine.receive_startup_ps + machine.probe_ps
+    fixed_ps = startup_ps + max(cost.fixed_ps for cost in costs)
+    copied_bytes = _largest_payload_bytes(workload, machine) + messages * machine.request_bytes
+    rates = [cost.bytes_per_s for cost in costs if cost.bytes_per_s]
+    copy_ps = copied_bytes * PS_PER_S // min(rates) if rates else 0
+    return messages * fixed_ps + copy_ps
+
+
+def _longest_flight_ps(workload: Workload, machine: Machine) -> int:
+    """The largest message from one end of the torus to the other."""
+    links = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    rates = [rate for rate in links if rate]
+    n_bytes = _largest_payload_bytes(workload, machine) + machine.header_bytes
+    transfer_ps = n_bytes * PS_PER_S // min(rates) if rates else 0
+    diameter = sum(size // 2 for size in machine.shape)
+    return machine.latency_ps + diameter * machine.hop_latency_ps + transfer_ps
+
+
+def beyond_the_clock() -> ConfigError:
+    """The error of a run that would last too long."""
+    return ConfigError(
+        f"the simulated time exceeds the clock's {CLOCK_LIMIT_PS} ps (53 days): "
+        "expected smaller costs or a smaller workload"
+    )

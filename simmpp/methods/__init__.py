@@ -1,0 +1,1 @@
+"""Ways from a case to its row: simulation, and the paper's analytical model."""

@@ -1,0 +1,1 @@
+"""Figures as data, and how they are drawn: for print and for pages."""

@@ -1,0 +1,137 @@
+"""Curves with the spread of their seeds, beside what the paper states: what a figure is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from simmpp.sweeps.ratios import Ratios, mean
+
+LOG_MARGIN = 1.2
+"""Factor of room beyond both ends of a logarithmic axis."""
+
+
+class Spread(NamedTuple):
+    """A value over seeds."""
+
+    mean: float
+    low: float
+    """The least of the seeds, or the lower end of an interval: the panel's note says which."""
+    high: float
+    """The largest of the seeds, or the upper end."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line with a band around it; those with one label look the same."""
+
+    label: str
+    points: dict[float, Spread]
+    """By abscissa."""
+    is_guide: bool = False
+    """Not measured: drawn thin and grey."""
+    said: dict[float, str] = field(default_factory=dict)
+    """What is written beside points, by abscissa."""
+    floor: float = 0
+    """Below this nothing can be told apart; drawn as a band under the curve."""
+    style: int | None = None
+    """Number of its colour and marker; its place among the panel's curves if not given."""
+    rows: dict[float, int] = field(default_factory=dict)
+    """Number of the profit that a point shows, by abscissa, where there is one."""
+    is_before: bool = False
+    """What another curve is compared with: drawn wide and pale."""
+    marked: frozenset[float] = frozenset()
+    """Abscissas of points that are to be looked at."""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A range that the paper's text gives, drawn behind the curves."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+    label: str
+
+
+@dataclass(frozen=True)
+class Scale:
+    """An axis: what it shows and in which unit, and how it is divided."""
+
+    label: str
+    is_log: bool = False
+    ticks: tuple[float, ...] = ()
+    """Chosen by the plot if empty."""
+    names: tuple[str, ...] = ()
+    """What stands at the ticks, if not their numbers; values in between mean nothing."""
+    limits: tuple[float, float] | None = None
+    """Its ends, where panels are to be compared; chosen by the plot if not given."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One system of axes."""
+
+    title: str
+    x: Scale
+    y: Scale
+    curves: list[Curve]
+    stated: list[Stated] = field(default_factory=list)
+    level: float | None = None
+    """A value that divides winners from losers, drawn as a thin line."""
+    note: str = ""
+    """What lines and bands are."""
+    legend: str = ""
+    """What the curves' labels are, if that needs saying."""
+
+    def style_of(self, curve: Curve) -> int:
+        """Number of a measured curve's colour and marker: those of one label look the same."""
+        if curve.style is not None:
+            return curve.style
+        labels = dict.fromkeys(each.label for each in self.curves if not each.is_guide)
+        return list(labels).index(curve.label)
+
+    @property
+    def has_bands(self) -> bool:
+        """Spreads are drawn as bands: not between names, and not over what was before."""
+        return not self.x.names and not any(curve.is_before for curve in self.curves)
+
+
+def curve(
+    label: str,
+    abscissas: Iterable[float],
+    ratios_at: Callable[[float], Ratios],
+    number_at: Callable[[float], int | None] = lambda _: None,
+    unit: float = 1,
+) -> Curve:
+    """The curve of what was measured; ``unit`` scales the abscissa, 100 for per cent.
+
+    Points without a result are left out. ``number_at`` gives the number of a point, if it has one.
+    """
+    measured = {x: ratios_at(x) for x in abscissas}
+    spreads = {
+        x * unit: Spread(mean(ratios), min(ratios), max(ratios))
+        for x, ratios in measured.items()
+        if ratios
+    }
+    numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
+    return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})
+
+
+# --- what a whole is made of, as stacked bars: shares of time, messages by kind ---
+
+
+@dataclass(frozen=True)
+class Bars:
+    """One system of axes with bars side by side."""
+
+    title: str
+    x: Scale
+    """Its names are those of the bars."""
+    y: Scale
+    parts: dict[str, list[float]]
+    """Heights of each part, one for each bar; the bottom part first."""
+    rows: list[int] = field(default_factory=list)
+    """Number of the point that a bar shows."""

@@ -1,0 +1,174 @@
+"""Draws curves and stacked bars as PNG and SVG, readable in print and by the colour-blind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+
+from simmpp.plot.curves import Bars, Curve, Panel, Scale, Stated
+
+STYLES: tuple[dict[str, Any], ...] = (
+    {"color": "#0072B2", "marker": "o", "linestyle": "-"},
+    {"color": "#D55E00", "marker": "s", "linestyle": "--"},
+    {"color": "#009E73", "marker": "^", "linestyle": "-."},
+    {"color": "#CC79A7", "marker": "D", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
+    {"color": "#E69F00", "marker": "v", "linestyle": (0, (1, 1))},
+    {"color": "#56B4E9", "marker": "P", "linestyle": (0, (6, 2))},
+    {"color": "#000000", "marker": "X", "linestyle": (0, (3, 1))},
+)
+"""Colours of Okabe and Ito (2008), which all readers tell apart; markers and lines differ too."""
+GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
+STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
+FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
+FADE = 1.35
+"""A band below a level is drawn down to that part of it: others lie deeper."""
+PARTS: tuple[dict[str, Any], ...] = (
+    {"facecolor": "#1f5f8b"},
+    {"facecolor": "#e8963a", "hatch": "\\\\\\"},
+    {"facecolor": "#d5dbe1"},
+    {"facecolor": "#8c62b3", "hatch": "////"},
+)
+"""Of bars, bottom first: they differ in lightness too."""
+WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
+FEW = 4
+"""Panels up to which two are side by side; of more it is three."""
+SETTINGS: Any = {
+    "svg.hashsalt": "simmpp",
+    "svg.fonttype": "none",
+    "hatch.linewidth": 0.4,
+    "hatch.color": "0.72",
+    "font.size": 9,
+}
+"""Equal figures give equal bytes: ids in SVG are hashes with this salt, not random."""
+
+
+def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
+    """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
+    across = min(len(panels), 2 if len(panels) <= FEW else 3)
+    down = -(-len(panels) // across)
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")
+        grid = figure.subplots(down, across, squeeze=False)
+        for axes in grid.flat[len(panels) :]:
+            axes.remove()
+        for axes, panel in zip(grid.flat, panels, strict=False):
+            _draw_bars(axes, panel) if isinstance(panel, Bars) else _draw_panel(axes, panel)
+        return save(figure, stem)
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a figure as ``stem``.png and ``stem``.svg, without dates."""
+    png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
+    figure.savefig(png, dpi=DOTS_PER_INCH)
+    figure.set_layout_engine("none")  # laid out once; the second file is to be the same
+    figure.savefig(svg, metadata={"Date": None})
+    return [png, svg]
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    for stated in panel.stated:
+        _draw_stated(axes, stated)
+    if panel.level is not None:
+        axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
+    for curve in panel.curves:
+        style = GUIDE if curve.is_guide else STYLES[panel.style_of(curve) % len(STYLES)]
+        _draw_curve(axes, curve, style, panel)
+    axes.set_xscale("log" if panel.x.is_log else "linear")
+    axes.set_yscale("log" if panel.y.is_log else "linear")
+    _divide(axes.xaxis, panel.x)
+    _divide(axes.yaxis, panel.y)
+    if panel.y.limits:
+        axes.set_ylim(*panel.y.limits)
+    elif not panel.y.is_log:
+        axes.set_ylim(bottom=0)
+    if any(curve.said for curve in panel.curves):
+        axes.margins(y=0.14)  # room for what is written above the highest point
+    axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
+    axes.grid(linewidth=0.3, color="0.8")
+    axes.set_axisbelow(True)
+    if panel.curves:
+        _draw_legend(axes, panel.legend)
+
+
+def _draw_legend(axes: Axes, title: str) -> None:
+    """Each label once."""
+    handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    axes.legend(
+        handles.values(),
+        handles.keys(),
+        title=title or None,
+        fontsize=8,
+        title_fontsize=8,
+        handlelength=3.2,
+    )
+
+
+def _draw_bars(axes: Axes, bars: Bars) -> None:
+    """Parts on top of each other, one bar for each name."""
+    places = range(len(bars.x.names))
+    bottom = [0.0] * len(places)
+    for (part, heights), style in zip(bars.parts.items(), PARTS, strict=False):
+        axes.bar(places, heights, 0.85, bottom, label=part, edgecolor="white", lw=0.3, **style)
+        bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
+    axes.set_xticks(places, bars.x.names, fontsize=7)
+    axes.set_xlabel(bars.x.label)
+    axes.set_ylabel(bars.y.label)
+    if bars.y.limits:
+        axes.set_ylim(*bars.y.limits)
+    axes.set_title(bars.title, fontsize=9)
+    if bars.parts:
+        axes.legend(fontsize=8, loc="upper right", framealpha=0.9)
+
+
+def _draw_stated(axes: Axes, stated: Stated) -> None:
+    corner = (stated.left, stated.low)
+    width, height = stated.right - stated.left, stated.high - stated.low
+    axes.add_patch(Rectangle(corner, width, height, label=stated.label or None, zorder=0, **STATED))
+
+
+def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -> None:
+    """The mean as a line, the spread of the seeds as a band; or points with bars, if so wished."""
+    xs = sorted(curve.points)
+    spreads = [curve.points[x] for x in xs]
+    means = [spread.mean for spread in spreads]
+    if curve.is_guide:
+        axes.plot(xs, means, label=curve.label, **style)
+        return
+    lows, highs = [spread.low for spread in spreads], [spread.high for spread in spreads]
+    if curve.is_before:
+        axes.plot(xs, means, label=curve.label, linewidth=5, alpha=0.3, color=style["color"])
+        return
+    if panel.x.names:
+        axes.vlines(xs, lows, highs, color=style["color"], linewidth=1.2)
+        style = style | {"linestyle": ""}
+    if panel.has_bands:
+        axes.fill_between(xs, lows, highs, color=style["color"], alpha=0.22, linewidth=0)
+    axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
+    if curve.floor:
+        axes.fill_between(xs, curve.floor / FADE, curve.floor, color=style["color"], **FLOOR)
+    for x, text in curve.said.items():
+        place = (x, curve.points[x].mean)
+        axes.annotate(text, place, (3, 3), textcoords="offset points", fontsize=6.5)
+
+
+def _divide(axis: Axis, scale: Scale) -> None:
+    """Label an axis and choose its ticks."""
+    axis.set_label_text(scale.label)
+    if scale.is_log:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_minor_locator(NullLocator())
+        axis.set_minor_formatter(NullFormatter())
+    if scale.ticks:
+        axis.set_major_locator(FixedLocator(list(scale.ticks)))
+    if scale.names:
+        axis.set_ticks(list(scale.ticks), list(scale.names))
+    else:
+        axis.set_major_formatter("{x:g}")

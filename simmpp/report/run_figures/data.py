@@ -1,0 +1,182 @@
+"""The data of a run's pictures: pure functions of its counters, its accounts and its workload."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.compiled import njit
+from simmpp.engine.record.counters import Ints
+from simmpp.engine.residency import resident_bytes
+from simmpp.engine.result import Result
+from simmpp.machine.torus import DIRECTIONS, ROWS_PER_PE, hops, link_towards
+from simmpp.run.point import Point, PolicyRun
+
+MARKS = (95, 99, 100)
+"""Per cent of the rays."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """All that the pictures of one run show; nb PEs, B bins of time, integers where not said."""
+
+    title: str
+    shape: tuple[int, int, int]
+    """Of the torus."""
+    makespan_ps: int
+    bin_ps: int
+    """Width of a bin of time; the last one ends with the run."""
+    compute_ps: Ints
+    """(nb, B)."""
+    communication_ps: Ints
+    """(nb, B)."""
+    waiting_ps: Ints
+    """(nb, B): with the two above the whole of each bin."""
+    finished: Ints
+    """(B,): rays finished."""
+    marks_ps: dict[int, int]
+    """When 95, 99 and 100 % of the rays were finished, at the end of that bin."""
+    batches: Ints
+    """(3, B): messages of rays, rays in them, rays in the largest."""
+    messages: Ints
+    """(nb, nb): from row to column."""
+    bytes: Ints
+    """(nb, nb): with headers."""
+    sizes: Ints
+    """(4, k): messages of each kind whose bytes have k binary digits."""
+    hops: Ints
+    """(h,): messages that crossed 0, 1, ... links."""
+    link_bytes: Ints
+    """(nb, 6): bytes over each link, in the order of ``machine.links.DIRECTIONS``."""
+    load: NDArray[np.float64]
+    """(nb,) float64: mean number of rays held."""
+    resident_bytes: Ints
+    """(nb,)."""
+    transient_bytes: Ints
+    """(nb,): most bytes of fetched objects at once."""
+    queue_bytes: Ints
+    """(nb,): of the most rays held at once."""
+    peak_bytes: Ints
+    """(nb,): most bytes held at once, at most the sum of the three above."""
+    pixel_cost_ps: Ints
+    """(rows, columns): tests and rays of each pixel's tree."""
+    pixel_hops: Ints
+    """(rows, columns): links crossed for them."""
+    pixel_owner: Ints
+    """(rows, columns): the PE that each pixel starts on."""
+
+    @property
+    def times_ps(self) -> Ints:
+        """(B + 1,) int64: edges of the bins."""
+        edges = np.arange(len(self.finished) + 1, dtype=np.int64) * self.bin_ps
+        return np.minimum(edges, self.makespan_ps)
+
+    @property
+    def utilisation(self) -> NDArray[np.float64]:
+        """(B,) float64: share of each bin that PEs compute or communicate."""
+        busy_ps = (self.compute_ps + self.communication_ps).sum(axis=0)
+        whole_ps = np.diff(self.times_ps) * len(self.load)
+        return np.asarray(busy_ps / np.maximum(whole_ps, 1), np.float64)
+
+    @property
+    def completion(self) -> NDArray[np.float64]:
+        """(B,) float64: share of the rays that is finished at the end of each bin."""
+        done = np.cumsum(self.finished)
+        return np.asarray(done / max(int(done[-1]), 1), np.float64)
+
+
+def motion_of(point: Point, run: PolicyRun) -> Motion:
+    """The data of all pictures of a run that recorded its counters."""
+    result, machine, workload = run.result, point.machine, point.workload
+    counters = result.counters
+    if counters is None:
+        raise ValueError("pictures of a run: expected one that recorded its counters")
+    bin_ps = counters.bin_ps
+    n_bins = max(1, -(-result.makespan_ps // bin_ps))
+    compute_ps = counters.compute_ps[:, :n_bins]
+    communication_ps = counters.communication_ps[:, :n_bins]
+    edges = np.minimum(np.arange(n_bins + 1) * bin_ps, result.makespan_ps)
+    resident = resident_bytes(workload, point.placement, run.all_resident)
+    finished = counters.finished[:n_bins]
+    largest = int(np.flatnonzero(counters.sizes.any(axis=0)).max(initial=0))
+    return Motion(
+        title=run.parameters.title,
+        shape=machine.shape,
+        makespan_ps=result.makespan_ps,
+        bin_ps=bin_ps,
+        compute_ps=compute_ps,
+        communication_ps=communication_ps,
+        waiting_ps=np.diff(edges) - compute_ps - communication_ps,
+        finished=finished,
+        marks_ps=marks_of(finished, edges),
+        batches=counters.batches[:, :n_bins],
+        messages=counters.messages,
+        bytes=counters.bytes,
+        sizes=counters.sizes[:, : largest + 1],
+        hops=hops_of(machine.shape, counters.messages),
+        link_bytes=bytes_over_links(machine.shape, counters.bytes),
+        load=counters.load_ps / max(result.makespan_ps, 1),
+        resident_bytes=resident,
+        transient_bytes=result.pe_peak_object_bytes - resident,
+        queue_bytes=result.pe_peak_rays * machine.ray_bytes,
+        peak_bytes=result.pe_peak_bytes,
+        pixel_cost_ps=pixel_costs(point),
+        pixel_hops=pixel_hops(point, result),
+        pixel_owner=point.placement.pixel_pes.astype(np.int64).reshape(workload.picture),
+    )
+
+
+def marks_of(finished: Ints, edges_ps: Ints) -> dict[int, int]:
+    """When 95, 99 and 100 % of the rays were finished: per cent to ps."""
+    done = np.cumsum(finished)
+    needed = {share: -(-int(done[-1]) * share // 100) for share in MARKS}
+    return {s: int(edges_ps[1 + np.searchsorted(done, n)]) for s, n in needed.items()}
+
+
+@njit
+def bytes_over_links(shape: tuple[int, int, int], traffic: Ints) -> Ints:
+    """Bytes over each link (nb, 6), of the bytes (nb, nb) from PE to PE."""
+    total = np.zeros(ROWS_PER_PE * len(traffic), np.int64)
+    for source in range(len(traffic)):
+        for destination in range(len(traffic)):
+            here = source
+            while here != destination and traffic[source, destination] > 0:
+                link, here = link_towards(shape, here, destination)
+                total[link] += traffic[source, destination]
+    return total.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
+
+
+@njit
+def hops_of(shape: tuple[int, int, int], messages: Ints) -> Ints:
+    """How many of the messages (nb, nb) crossed 0, 1, ... links."""
+    x, y, z = shape
+    counts = np.zeros(x // 2 + y // 2 + z // 2 + 1, np.int64)
+    for source in range(len(messages)):
+        for destination in range(len(messages)):
+            counts[hops(x, y, z, source, destination)] += messages[source, destination]
+    return counts
+
+
+def pixel_costs(point: Point) -> Ints:
+    """Time of the tests and rays of each pixel's tree: (rows, columns) ps."""
+    workload, machine = point.workload, point.machine
+    test_ps = machine.test.of_objects(workload)[workload.itinerary_objects]
+    before_ps = np.concatenate([[0], np.cumsum(test_ps, dtype=np.int64)])
+    ray_ps = np.diff(before_ps[workload.itinerary_offsets]) + machine.ray_ps
+    return _by_pixel(point, ray_ps)
+
+
+def pixel_hops(point: Point, result: Result) -> Ints:
+    """Links crossed for the rays of each pixel's tree: (rows, columns)."""
+    rays = result.ray_hops
+    return _by_pixel(point, np.zeros(point.workload.n_rays, np.int64) if rays is None else rays)
+
+
+def _by_pixel(point: Point, of_rays: NDArray[np.integer]) -> Ints:
+    """Sums over the rays of each pixel's tree."""
+    workload = point.workload
+    total = np.zeros(workload.n_primaries, np.int64)
+    np.add.at(total, workload.pixels, of_rays)
+    return total.reshape(workload.picture)

@@ -1,0 +1,48 @@
+"""Draws the pictures of each run of a point as soon as it is over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.errors import ConfigError
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.run_figures.data import motion_of
+from simmpp.run.point import Point, PolicyRun
+
+MOST_PROCESSORS = 2048
+
+
+class FiguresRecorder:
+    """Writes <policy>-<what>.png and .svg into a folder."""
+
+    needs_counters = True
+
+    def __init__(self, folder: Path, point: Point) -> None:
+        if point.machine.processors > MOST_PROCESSORS:
+            problem = f"expected at most {MOST_PROCESSORS} processors: who sent to whom is a matrix"
+            raise ConfigError(problem, where="--figures")
+        self._folder = folder
+        self._point = point
+        self._picture = _picture(point)
+
+    def begin(self, policy: PolicyParameters) -> None:
+        """No event log is needed."""
+
+    def end(self, run: PolicyRun) -> None:
+        """A run is over: draw it."""
+        from simmpp.report.run_figures.drawing import draw_motion
+
+        draw_motion(motion_of(self._point, run), self._folder, self._picture)
+
+
+def _picture(point: Point) -> NDArray[np.uint8] | None:
+    """What was rendered, if there is a scene and not only its rays."""
+    if point.config.settings.scene.workload is not None:
+        return None
+    from simmpp.scene.load import load_scene
+    from simmpp.workload.trace.shading import render
+
+    return render(load_scene(point.config.scene_spec), point.config.picture, point.workload)

@@ -1,0 +1,1 @@
+"""One point: its inputs, its simulation, its row and what is said of it."""

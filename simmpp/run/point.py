@@ -1,0 +1,158 @@
+"""One point: the policies of a configuration on one workload, one machine and one placement."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TypedDict
+
+from simmpp.common.strict import misplaced
+from simmpp.config.config import Config
+from simmpp.engine.record.log import Sink
+from simmpp.engine.result import Result
+from simmpp.engine.simulate import simulate
+from simmpp.machine.limits import total_compute_ps
+from simmpp.machine.machine import Machine
+from simmpp.methods.table import SIMULATE
+from simmpp.placement.place import place
+from simmpp.placement.placement import Placement
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.registry import POLICIES
+from simmpp.workload.workload import Workload
+
+REFERENCE, CEILING = "object", "replicated"
+"""Run with every point: what profits are measured against, and no dataflow at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """What all policies of a point share: the machine, and the placement drawn once."""
+
+    config: Config
+    workload: Workload
+    machine: Machine
+    placement: Placement
+    seed: int
+
+    @property
+    def bound_ps(self) -> int:
+        """Total compute / nb, rounded up: no policy can be faster."""
+        return -(-total_compute_ps(self.workload, self.machine) // self.machine.processors)
+
+
+@dataclass(frozen=True, eq=False)
+class PolicyRun:
+    """One policy at one point."""
+
+    parameters: PolicyParameters
+    result: Result
+    named: bool
+    """The configuration names it; otherwise it is there to be compared with."""
+    wall_s: float
+    """Time that the event loop took here."""
+
+    @property
+    def all_resident(self) -> bool:
+        """Every object is in every memory, whatever the fraction."""
+        return POLICIES[self.parameters.name].all_resident
+
+
+def make_point(config: Config, workload: Workload, seed: int | None = None) -> Point:
+    """Draw the placement; ``seed`` is the first of the configuration's by default.
+
+    Raises ConfigError if the memory or the machine's shape does not fit.
+    """
+    refuse_models(config)
+    seed = config.settings.seeds[0] if seed is None else seed
+    machine = config.machine_for(config.processors)
+    placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
+    return Point(config, workload, machine, placement, seed)
+
+
+def refuse_models(config: Config) -> None:
+    """Raise ConfigError for a method that simulates nothing."""
+    method = config.settings.method
+    if method != SIMULATE:
+        places = config.source.places if config.source else {}
+        raise misplaced(("method",), f"value {method!r}: expected {SIMULATE} here", places)
+
+
+def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
+    """The policies to run, and whether the configuration names them; the reference comes first."""
+    named = config.policies
+    names = [parameters.name for parameters in named]
+    chosen = [(parameters, True) for parameters in named]
+    chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
+    if REFERENCE not in names:
+        return [(PolicyParameters(REFERENCE), False), *chosen]
+    return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
+
+
+class Records(TypedDict):
+    """What a run notes besides its counters."""
+
+    log: bool | Sink
+    record_tests: bool
+    record_counters: bool
+    record_hops: bool
+
+
+def run_point(
+    point: Point,
+    *,
+    record_tests: bool = False,
+    record_counters: bool = False,
+    log_of: Callable[[PolicyParameters], Sink | None] = lambda _: None,
+    progress: Callable[[str, int], None] | None = None,
+) -> Iterator[PolicyRun]:
+    """Simulate the policies one after the other, yielding each as it is finished.
+
+    ``record_counters`` records the links crossed for each ray too. ``log_of`` gives what gets the
+    event log of a policy's run, if anything. ``progress(title, rays left)`` is
+    called now and then.
+    """
+    for parameters, named in policies_of(point.config):
+        records: Records = {
+            "log": log_of(parameters) or False,
+            "record_tests": record_tests,
+            "record_counters": record_counters,
+            "record_hops": record_counters,
+        }
+        yield _run(point, parameters, named, records, progress)
+
+
+def _run(
+    point: Point,
+    parameters: PolicyParameters,
+    named: bool,
+    records: Records,
+    progress: Callable[[str, int], None] | None,
+) -> PolicyRun:
+    def report(rays_left: int) -> None:
+        if progress is not None:
+            progress(parameters.title, rays_left)
+
+    settings = point.config.settings
+    began_s = time.perf_counter()
+    result = simulate(
+        point.workload,
+        point.machine,
+        point.placement,
+        parameters,
+        engine=settings.engine,
+        ready_order=settings.ready_order,
+        progress=report,
+        **records,
+    )
+    return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
+
+
+def reference_of(runs: list[PolicyRun]) -> PolicyRun:
+    """The run that profits are measured against."""
+    return next(run for run in runs if run.parameters.name == REFERENCE)
+
+
+def ceiling_of(runs: list[PolicyRun]) -> PolicyRun | None:
+    """The run with the whole scene in every memory, if it is finished."""
+    return next((run for run in runs if run.all_resident), None)

@@ -1,0 +1,51 @@
+"""The paper's two measures: how much better a policy is than object dataflow.
+
+Source: Nebel 1998, section 4 (figures 3 to 5).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from simmpp.common.errors import ConfigError
+from simmpp.engine.result import Result
+from simmpp.run.point import REFERENCE
+
+
+@dataclass(frozen=True)
+class Profit:
+    """What one policy gains over the reference; above 1 it is better."""
+
+    policy: str
+    time: float
+    """Makespan of the reference / makespan of the policy."""
+    messages: float
+    """Messages of the reference / messages of the policy."""
+
+
+def ratio(reference: int, value: int) -> float:
+    """reference / value; nothing over nothing is 1, something over nothing is infinite."""
+    if value:
+        return reference / value
+    return math.inf if reference else 1.0
+
+
+def profits(results: Sequence[Result], reference: str = REFERENCE) -> tuple[Profit, ...]:
+    """Time and message profit of each result over the one whose policy is ``reference``.
+
+    Raises ConfigError if there is none.
+    """
+    base = next((result for result in results if result.policy == reference), None)
+    if base is None:
+        known = ", ".join(result.policy for result in results)
+        raise ConfigError(f"no result of the reference {reference!r}; there are: {known}")
+    return tuple(
+        Profit(
+            result.policy,
+            ratio(base.makespan_ps, result.makespan_ps),
+            ratio(base.messages, result.messages),
+        )
+        for result in results
+    )

@@ -1,0 +1,104 @@
+"""The table that ``simmpp run`` prints: one column per policy, one line per measure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
+from simmpp.run.profit import ratio
+
+Cell = Callable[[PolicyRun], str]
+
+
+def summary(point: Point, runs: Sequence[PolicyRun]) -> Group:
+    """What was simulated, the table, the bound, and which rules never fired."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("", no_wrap=True)
+    for run in runs:
+        table.add_column(run.parameters.title, justify="right", no_wrap=True)
+    for label, cell in _lines(list(runs)):
+        table.add_row(label, *map(cell, runs))
+    return Group(Text(heading(point)), Text(), table, Text(), Text("\n".join(_notes(point, runs))))
+
+
+def heading(point: Point) -> str:
+    """Two lines that say what was simulated."""
+    workload, machine, placement = point.workload, point.machine, point.placement
+    rows, columns = workload.picture
+    shape = " x ".join(map(str, machine.shape))
+    memory = point.config.memory
+    room = (
+        format_bytes(memory.bytes)
+        if memory.bytes is not None
+        else f"{float(memory.fraction):g} of the scene"
+    )
+    return (
+        f"{workload.name}: {columns} x {rows} primary rays, "
+        f"{counted(workload.n_rays, 'ray')} in all, "
+        f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
+        f"{machine.name}: {counted(machine.processors, 'PE')} ({shape}), memory {room} on each "
+        f"(effectively {placement.effective_fraction:.4g}), seed {point.seed}"
+    )
+
+
+def _lines(runs: list[PolicyRun]) -> list[tuple[str, Cell]]:
+    base, ceiling = reference_of(runs).result, ceiling_of(runs)
+    lines: list[tuple[str, Cell]] = [
+        ("makespan", lambda run: format_ps(run.result.makespan_ps)),
+        ("time profit", lambda run: _times(ratio(base.makespan_ps, run.result.makespan_ps))),
+    ]
+    if ceiling:
+        top_ps = ceiling.result.makespan_ps
+        lines += [
+            ("  against replicated", lambda run: _times(ratio(top_ps, run.result.makespan_ps)))
+        ]
+    return [
+        *lines,
+        ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
+        ("messages", lambda run: f"{run.result.messages}"),
+        ("  requests", lambda run: f"{run.result.request_messages}"),
+        ("  objects", lambda run: f"{run.result.object_messages}"),
+        ("  rays", lambda run: f"{run.result.ray_messages}"),
+        ("  loads", lambda run: f"{run.result.load_messages}"),
+        ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
+        ("rays sent", lambda run: f"{run.result.rays_sent}"),
+        ("utilisation, least", lambda run: f"{utilisation(run).min():.1%}"),
+        ("  mean", lambda run: f"{utilisation(run).mean():.1%}"),
+        ("  most", lambda run: f"{utilisation(run).max():.1%}"),
+        ("imbalance", lambda run: f"{imbalance(run):.3f}"),
+        ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
+        ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
+    ]
+
+
+def _times(value: float) -> str:
+    return "inf" if math.isinf(value) else f"{value:.3f}"
+
+
+def utilisation(run: PolicyRun) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Share of the makespan that each PE computes or communicates: (nb,) float64."""
+    busy_ps = run.result.compute_ps + run.result.communication_ps
+    return np.asarray(busy_ps / max(run.result.makespan_ps, 1), np.float64)
+
+
+def imbalance(run: PolicyRun) -> float:
+    """Busy time of the busiest PE / mean over PEs; 1 where there is no work."""
+    busy = utilisation(run)
+    return float(busy.max() / busy.mean()) if busy.any() else 1.0
+
+
+def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+    notes = [f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"]
+    notes += [
+        f"{run.parameters.title}: its {rule} rule never fired"
+        for run in runs
+        for rule in run.result.rules_never_fired
+    ]
+    return notes

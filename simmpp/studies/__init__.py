@@ -1,0 +1,1 @@
+"""What runs many simulations for one question."""

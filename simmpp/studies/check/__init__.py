@@ -1,0 +1,1 @@
+"""Regression of profit curves in continuous integration."""

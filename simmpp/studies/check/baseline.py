@@ -1,0 +1,156 @@
+"""The baseline of `simmpp check`: a committed profits.csv with results.csv and run.json beside it.
+
+These are files of a sweep. Their ``run.json`` also holds the SHA-256 of the other two, so that a
+baseline that was merged by hand, or of which an update was interrupted, is noticed. The versions
+that it records are for people and are not compared: float64 decides hits and integers are the
+clock, so no version of numba or embreex changes a row.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import read_csv, replaced, write_text
+from simmpp.config.config import Config, config_from_mapping, described
+from simmpp.methods.columns import COLUMNS
+from simmpp.run.provenance import difference
+from simmpp.studies.check.moves import Tables
+from simmpp.sweeps.profits import profit_columns
+
+PROFITS, RESULTS, RECORD = "profits.csv", "results.csv", "run.json"
+DIGESTS = "sha256"
+"""Key of ``run.json``: the other files' digests."""
+IRRELEVANT = ("check", "engine")
+"""Keys of a configuration that change no integer."""
+MACHINES, WORKLOADS = "machines", "workloads"
+"""What of ``run.json`` explains moves."""
+UPDATE = "run with --update to make one"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The tables of a folder and the record of what they are of."""
+
+    tables: Tables
+    record: Mapping[str, Any]
+
+
+def baseline_folder(path: Path) -> Path:
+    """The folder of a baseline that is named by its profits.csv or by itself."""
+    if path.is_dir():
+        return path
+    if path.name != PROFITS:
+        raise _wrong(path, f"expected a file {PROFITS} (with {RESULTS} and {RECORD} beside it)")
+    return path.parent
+
+
+def read_baseline(path: Path, config: Config) -> Sweep:
+    """The baseline at ``path``, which must be one of this configuration.
+
+    Raises ConfigError, one line, if there is none, if it is damaged, or what differs.
+    """
+    folder = baseline_folder(path)
+    try:
+        found = read_sweep(folder)
+    except FileNotFoundError as error:
+        missing = Path(error.filename).name if folder.is_dir() else "such folder"
+        raise _wrong(path, f"there is no {missing}: {UPDATE}") from None
+    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise _wrong(path, f"it is no baseline ({reason}): {UPDATE}") from None
+    if problem := _other_settings(found.record["config"], config):
+        raise _wrong(path, f"it is of other settings ({problem}): {UPDATE}")
+    return found
+
+
+def _wrong(path: Path, problem: str) -> ConfigError:
+    return ConfigError(f"--baseline: value {str(path)!r}: {problem}")
+
+
+def read_sweep(folder: Path) -> Sweep:
+    """The tables in a folder; raises OSError, ValueError or csv.Error for what is none."""
+    record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    if not isinstance(record, dict) or not isinstance(record.get("config"), dict):
+        raise ValueError(f"{RECORD} has no configuration")
+    for name, digest in dict(record.get(DIGESTS, {})).items():
+        if _digest(folder / name) != digest:
+            raise ValueError(f"{name} is not the file that {RECORD} was written with")
+    results = read_csv(folder / RESULTS, COLUMNS)
+    profits = read_csv(folder / PROFITS, profit_columns())
+    return Sweep(Tables(results, profits), record)
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of a text's lines, however they end."""
+    return hashlib.sha256(b"\n".join(path.read_bytes().splitlines())).hexdigest()
+
+
+def _other_settings(recorded: dict[str, Any], config: Config) -> str:
+    """What differs between the settings recorded and these; keys not known then had defaults."""
+    here = described(config)
+    defaults = described(config_from_mapping({"scene": here["scene"]}))
+    sides = [_merged(defaults, each) for each in (recorded, here)]
+    for side in sides:
+        for key in IRRELEVANT:
+            side.pop(key, None)
+    return difference(sides[0], sides[1], "in the baseline")
+
+
+def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    merged = {**defaults, **given}
+    for key in ("picture", "machine", "memory", "placement"):
+        if isinstance(given.get(key), dict):
+            merged[key] = {**defaults[key], **given[key]}
+    return merged
+
+
+def reasons(baseline: Sweep, now: Sweep) -> list[str]:
+    """Machines and workloads that are not what they were: why values may have moved."""
+    found = []
+    for old, new in zip(_machines(baseline), _machines(now), strict=False):
+        if problem := difference(old, new, "in the baseline"):
+            found.append(f"machine {new.get('name')}, shape {new.get('shape')}: {problem}")
+    before, after = (each.record.get(WORKLOADS) for each in (baseline, now))
+    if isinstance(before, dict) and isinstance(after, dict):
+        others = [name for name in before if before[name] != after.get(name)]
+        found += [f"{name} was traced by other code, or is another scene" for name in others]
+    return found
+
+
+def _machines(sweep: Sweep) -> list[dict[str, Any]]:
+    """Constants of each machine, without what is said of their sources."""
+    machines = sweep.record.get(MACHINES)
+    listed = machines if isinstance(machines, list) else []
+    return [
+        {key: _by_place(value) for key, value in machine.items() if key != "sources"}
+        for machine in listed
+        if isinstance(machine, dict)
+    ]
+
+
+def _by_place(value: Any) -> Any:
+    """A list of mappings as a mapping, so that only what differs in it is told."""
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return {str(n): each for n, each in enumerate(value)}
+    return value
+
+
+def write_baseline(obtained: Path, folder: Path) -> None:
+    """Make the tables of a sweep's folder the baseline; each file is replaced in one step.
+
+    ``run.json`` comes last: until then its digests do not fit, and the baseline is refused.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (RESULTS, PROFITS):
+        with replaced(folder / name) as part:
+            part.write_bytes((obtained / name).read_bytes())
+    record = json.loads((obtained / RECORD).read_text(encoding="utf-8"))
+    record[DIGESTS] = {name: _digest(obtained / name) for name in (PROFITS, RESULTS)}
+    write_text(json.dumps(record, indent=1) + "\n", folder / RECORD)

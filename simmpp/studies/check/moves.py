@@ -1,0 +1,154 @@
+"""What moved between two sweeps of one configuration: integers, profits, points gone and new."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from simmpp.methods.columns import NUMBERS
+
+Row = Mapping[str, str]
+"""A line of a CSV file, cells as they are written."""
+
+EXACT = ("effective_fraction", *NUMBERS, "error")
+"""Columns of ``results.csv`` that must be equal unless tolerances are given."""
+PROFITS = ("time_profit", "message_profit", "speedup", "efficiency")
+"""Columns of ``profits.csv`` that a tolerance may be given for."""
+DERIVED = tuple(f"{name}{end}" for name in PROFITS[:2] for end in ("_low", "_high", "_min", "_max"))
+"""Columns that follow from the others; their last digits are the statistics library's."""
+NOT_KEYS = {*EXACT, *PROFITS, *DERIVED, "engine", "n"}
+POINT, THERE, MISSING, NEW = "point", "there", "missing", "new"
+
+
+@dataclass(frozen=True)
+class Tables:
+    """The rows of a sweep's ``results.csv`` and ``profits.csv``."""
+
+    results: Sequence[Row]
+    profits: Sequence[Row]
+
+
+@dataclass(frozen=True)
+class Move:
+    """One value that is not what it was, or a point that is gone or new."""
+
+    key: tuple[tuple[str, str], ...]
+    """Column and value of each axis; one with a seed is of ``results.csv``."""
+    measure: str
+    baseline: str
+    now: str
+    allowed: Fraction | None = None
+    """Relative change that would have been fine; None where nothing is."""
+
+    @property
+    def of_curve(self) -> bool:
+        """It is a value of ``profits.csv``; those of ``results.csv`` have a seed."""
+        return "seed" not in dict(self.key)
+
+    @property
+    def change(self) -> float | None:
+        """(now - baseline) / baseline; None where that is no number."""
+        return relative_change(self.baseline, self.now)
+
+
+def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> list[Move]:
+    """Everything that moved, profits first; without tolerances nothing may.
+
+    With tolerances (of names in PROFITS) only these profits, points and errors are compared.
+    """
+    allowed = {
+        name: tolerances.get(name) for name in PROFITS if not tolerances or name in tolerances
+    }
+    exact = ("error",) if tolerances else EXACT
+    return [
+        *_of_table(baseline.profits, now.profits, allowed),
+        *_of_table(baseline.results, now.results, dict.fromkeys(exact)),
+    ]
+
+
+def _of_table(
+    baseline: Sequence[Row], now: Sequence[Row], allowed: Mapping[str, Fraction | None]
+) -> Iterator[Move]:
+    old, new = ({key_of(row): row for row in rows} for rows in (baseline, now))
+    for key in dict.fromkeys([*old, *new]):
+        if key not in new:
+            yield Move(key, POINT, THERE, MISSING)
+        elif key not in old:
+            yield Move(key, POINT, MISSING, NEW)
+        else:
+            for name, tolerance in allowed.items():
+                before, after = old[key].get(name, ""), new[key].get(name, "")
+                if not _within(before, after, tolerance):
+                    yield Move(key, name, before, after, tolerance)
+
+
+def key_of(row: Row) -> tuple[tuple[str, str], ...]:
+    """The axes of a row: all columns that are no result."""
+    return tuple((name, value) for name, value in row.items() if name not in NOT_KEYS)
+
+
+def _within(before: str, after: str, tolerance: Fraction | None) -> bool:
+    if before == after:
+        return True
+    change = relative_change(before, after)
+    return tolerance is not None and change is not None and abs(change) <= tolerance
+
+
+def relative_change(before: str, after: str) -> float | None:
+    """(after - before) / before, or None where there is no such number."""
+    try:
+        old, new = float(before), float(after)
+    except ValueError:
+        return None
+    change = (new - old) / old if old else math.nan
+    return change if math.isfinite(change) else None
+
+
+def summary(found: Sequence[Move]) -> list[dict[str, str]]:
+    """One line per measure: how many rows moved, and by how much at least and at most."""
+    counted = []
+    for measure in dict.fromkeys(move.measure for move in found):
+        of_measure = [move for move in found if move.measure == measure]
+        changes = sorted(move.change for move in of_measure if move.change is not None)
+        counted.append(
+            {
+                "measure": measure,
+                "rows": str(len(of_measure)),
+                "from": percent(changes[0]) if changes else "",
+                "to": percent(changes[-1]) if changes else "",
+            }
+        )
+    return counted
+
+
+def lines(found: Sequence[Move], most: int | None = None) -> list[dict[str, str]]:
+    """One line per move, or the ``most`` that moved farthest, in the order of ``found``."""
+    ranked = sorted(range(len(found)), key=lambda n: (-_distance(found[n]), n))
+    chosen = sorted(ranked if most is None else ranked[:most])
+    axes = dict.fromkeys(name for n in chosen for name, _ in found[n].key)
+    return [_line(found[n], list(axes)) for n in chosen]
+
+
+def _distance(move: Move) -> float:
+    change = move.change
+    return math.inf if change is None else abs(change)
+
+
+def _line(move: Move, axes: Sequence[str]) -> dict[str, str]:
+    key = dict(move.key)
+    change = move.change
+    return {
+        **{axis: key.get(axis, "") for axis in axes},
+        "measure": move.measure,
+        "baseline": move.baseline,
+        "now": move.now,
+        "change": "" if change is None else percent(change),
+        "allowed": "none" if move.allowed is None else f"{float(move.allowed) * 100:g} %",
+    }
+
+
+def percent(change: float) -> str:
+    """0.01234 -> ``+1.23 %``."""
+    return f"{change * 100:+.3g} %"

@@ -1,0 +1,1 @@
+"""Whole curves along x from few runs."""

@@ -1,0 +1,1 @@
+"""Figures and claims of Nebel 1998."""

@@ -1,0 +1,61 @@
+"""Figure 2 of Nebel 1998 and the claims about it: the analytical model's part of a reproduction."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from simmpp.common.units import format_ps
+from simmpp.config.config import Config
+from simmpp.model.analytical import Rays, rays_of
+from simmpp.model.border import claims
+from simmpp.model.costs import Costs, costs_of
+from simmpp.studies.nebel98.figure2_data import (
+    ANALYTICAL,
+    DEFAULT_RATIOS,
+    model_grid,
+    model_times,
+    panels,
+    rows_of,
+    write_model,
+)
+from simmpp.studies.nebel98.figure2_plot import draw_figure2
+from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, Verdict
+from simmpp.workload.workload import Workload
+
+SAID = {
+    "F2a": "object dataflow is best when each PE holds a large part of the scene, ray dataflow "
+    "when a small part",
+    "F2b": "more processors favour object dataflow",
+}
+
+
+def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Verdict]:
+    """Write figure2.csv, figure2.png and figure2.svg; returns the verdicts on F2a and F2b."""
+    grid = model_grid(config)
+    times = model_times(config, workload, grid)
+    write_model(rows_of(times, workload.name, ANALYTICAL, 0.0), out)
+    costs, rays = costs_of(config.machine_for(config.processors), workload), rays_of(workload)
+    maps = panels(costs, rays, grid, DEFAULT_RATIOS, config.settings.seeds[0])
+    draw_figure2(maps, f"Figure 2: analytical model, {workload.name}", out)
+    return [
+        Verdict(
+            each.claim,
+            f"Nebel 1998, figure 2 (model): {SAID[each.claim]}",
+            each.simulated,
+            HOLDS if each.holds else DOES_NOT,
+            _by(costs, rays),
+        )
+        for each in claims(times)
+    ]
+
+
+def _by(costs: Costs, rays: Rays) -> str:
+    """The formula of the border (see ``model.border``) with this machine's and scene's numbers."""
+    asking = costs.pack_request + costs.unpack_request + costs.pack_object + costs.unpack_object
+    saved = 2 * costs.startup + asking - costs.pack_ray - costs.unpack_ray
+    message = costs.startup + costs.pack_message + costs.unpack_message
+    return (
+        f"border x = 1 - nb (nb - 1) M / (n S): M = {format_ps(round(message))} per message of "
+        f"rays, S = {format_ps(round(saved))} saved per ray that is sent and not served, "
+        f"n = {rays.mean_tests:.0f} rays at a step in the mean"
+    )

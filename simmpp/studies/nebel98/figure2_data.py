@@ -1,0 +1,181 @@
+"""The analytical model over the grid of a configuration: times, rows, the maps of figure 2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import Row, write_csv
+from simmpp.config.axes import axes_of
+from simmpp.config.config import Config, point_at
+from simmpp.model.analytical import Makespans, Rays, analytical, grouped, rays_of
+from simmpp.model.border import FRACTIONS, OBJECT, PROCESSORS, RAY, TIE, winners
+from simmpp.model.costs import Costs, costs_of
+from simmpp.model.measured import measured
+from simmpp.model.synchronous import DATAFLOWS
+from simmpp.placement.place import place
+from simmpp.workload.workload import Workload
+
+ANALYTICAL, MEASURED = "analytical", "analytical-measured"
+COLUMNS = (
+    "scene",
+    "processors",
+    "fraction",
+    "method",
+    "imbalance",
+    "object_ps",
+    "ray_ps",
+    "ray_over_object",
+    "winner",
+)
+WINNERS = {RAY: "ray", OBJECT: "object", TIE: "tie"}
+DEFAULT_RATIOS = (("packing", 100.0), ("object", 100.0), ("test", 10.0))
+"""Maps beside the machine's own: a group of operations, and how many times as long it takes."""
+FIGURE_IMBALANCE = 0.5
+FINE_PROCESSORS, FINE_FRACTIONS, FINE_STEPS = 33, 81, 32
+"""Resolution of the maps."""
+DRAWS = 4
+"""Draws of zeta that times with imbalance are means over."""
+
+
+class Grid(NamedTuple):
+    """The points of a model."""
+
+    processors: tuple[int, ...]
+    fractions: tuple[Fraction, ...]
+    left_out: tuple[str, ...]
+    """Keys that the sweep changes and that the model would see, but has no axis for."""
+
+
+class Panel(NamedTuple):
+    """One map of figure 2."""
+
+    title: str
+    fine: Makespans
+    """Drawn."""
+    grid: Makespans
+    """The points of the configuration, drawn as dots."""
+
+
+def model_grid(config: Config) -> Grid:
+    """The nb and x of the sweep; where it has none, those of the paper's claims.
+
+    Raises ConfigError for memories in bytes: the model knows shares.
+    """
+    processors: set[int] = set()
+    fractions: set[Fraction] = set()
+    left_out: dict[str, None] = {}
+    for name, axis in axes_of(config.settings.sweep).items():
+        for number, choice in enumerate(axis):
+            point = point_at(config, {name: axis}, {name: number})
+            if "processors" in choice.assignments:
+                processors.add(point.processors)
+            if "memory.fraction" in choice.assignments:
+                fractions.add(point.memory.fraction)
+            if "memory.bytes" in choice.assignments:
+                raise ConfigError("sweep: memory.bytes: expected memory.fraction for the model")
+            left_out |= dict.fromkeys(key for key in choice.assignments if _matters(key))
+    return Grid(
+        tuple(sorted(processors or PROCESSORS)),
+        tuple(sorted(fractions or FRACTIONS)),
+        tuple(left_out),
+    )
+
+
+def _matters(key: str) -> bool:
+    """The model has no policies, and takes the method as it is."""
+    return key not in ("processors", "memory.fraction") and key.split(".")[0] != "policy"
+
+
+def model_times(
+    config: Config, workload: Workload, grid: Grid, *, imbalance: float = 0.0
+) -> Makespans:
+    """TC and TO at every point, by the configuration's method, ``analytical`` if it simulates."""
+    if config.settings.method == MEASURED:
+        return _measured(config, workload, grid)
+    machine = config.machine_for(config.processors)
+    return analytical(
+        costs_of(machine, workload),
+        grid.processors,
+        [float(x) for x in grid.fractions],
+        rays_of(workload),
+        imbalance=imbalance,
+        seed=config.settings.seeds[0],
+        draws=DRAWS,
+    )
+
+
+def _measured(config: Config, workload: Workload, grid: Grid) -> Makespans:
+    times = np.empty((len(DATAFLOWS), len(grid.processors), len(grid.fractions)))
+    for row, nb in enumerate(grid.processors):
+        machine = config.machine_for(nb)
+        for column, x in enumerate(grid.fractions):
+            memory = replace(config.memory, fraction=x, bytes=None)
+            seed = config.settings.seeds[0]
+            placement = place(workload, nb, memory, config.placement_rules, seed)
+            for which, dataflow in enumerate(DATAFLOWS):
+                found = measured(workload, machine, placement, dataflow)
+                times[which, row, column] = found.makespan_ps
+    fractions = np.array([float(x) for x in grid.fractions])
+    return Makespans(np.array(grid.processors), fractions, times[0], times[1])
+
+
+def rows_of(times: Makespans, scene: str, method: str, imbalance: float) -> list[Row]:
+    """One row per point; times to the nearest picosecond."""
+    won = winners(times)
+    return [
+        {
+            "scene": scene,
+            "processors": int(nb),
+            "fraction": float(x),
+            "method": method,
+            "imbalance": imbalance,
+            "object_ps": round(times.object[i, j]),
+            "ray_ps": round(times.ray[i, j]),
+            "ray_over_object": float(times.ratio[i, j]),
+            "winner": WINNERS[int(won[i, j])],
+        }
+        for i, nb in enumerate(times.processors)
+        for j, x in enumerate(times.fractions)
+    ]
+
+
+def write_model(rows: Sequence[Row], folder: Path) -> None:
+    """Write ``figure2.csv``."""
+    write_csv(rows, COLUMNS, folder / "figure2.csv")
+
+
+def panels(
+    costs: Costs, rays: Rays, grid: Grid, ratios: Sequence[tuple[str, float]], seed: int
+) -> list[Panel]:
+    """Maps for the costs themselves and each ratio, without and with imbalance."""
+    variants = [("this machine", costs)]
+    variants += [(f"{name} x {factor:g}", costs.scaled(name, factor)) for name, factor in ratios]
+    return [
+        _panel(f"{title}, imbalance {imbalance:g}", chosen, rays, grid, imbalance, seed)
+        for imbalance in (0.0, FIGURE_IMBALANCE)
+        for title, chosen in variants
+    ]
+
+
+def _panel(title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, seed: int) -> Panel:
+    few = grouped(rays, FINE_STEPS)
+    lowest, highest = max(min(grid.processors), 2), max(grid.processors)
+    if highest <= lowest:
+        lowest, highest = max(lowest // 2, 2), 2 * lowest
+    fine = np.unique(np.geomspace(lowest, highest, FINE_PROCESSORS).round().astype(np.int64))
+    shares = np.linspace(0.0, 1.0, FINE_FRACTIONS)
+    own = [float(x) for x in grid.fractions]
+    return Panel(
+        title,
+        analytical(
+            costs, fine.tolist(), shares.tolist(), few, imbalance=imbalance, seed=seed, draws=DRAWS
+        ),
+        analytical(costs, grid.processors, own, few, imbalance=imbalance, seed=seed, draws=DRAWS),
+    )

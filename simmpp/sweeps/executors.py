@@ -1,0 +1,200 @@
+"""Worker processes on this machine: begun early, gone with the sweep however it ends."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from multiprocessing import forkserver
+from multiprocessing.connection import Connection
+from typing import Any, ParamSpec, TypeVar
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.modules import PRELOAD
+
+# --- who runs the tasks of a sweep: anything that takes one and gives its outcome back later ---
+
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class Crew:
+    """Anything with the interface of ``concurrent.futures.Executor``."""
+
+    is_elsewhere = False
+    """Workers may have other versions installed than this process."""
+
+    def __init__(self, executor: Executor, most_in_flight: int) -> None:
+        self.executor = executor
+        self.most_in_flight = most_in_flight
+        """Tasks that are given out and not back: enough to keep all busy, no more to be lost."""
+
+    def renew(self) -> None:
+        """Make the executor anew after one of its workers died, if it doesn't do so itself."""
+
+    def close(self) -> None:
+        """End at once, whatever is still in flight."""
+        self.executor.shutdown(wait=False, cancel_futures=True)
+
+
+class Here(Executor):
+    """Runs each task when it is given."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Its outcome, already there."""
+        future: Future[T] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+METHOD = "spawn" if sys.platform == "win32" else "forkserver"
+"""A fork of this process would copy the locks of its threads."""
+
+
+class Processes(Crew):
+    """Processes on this machine, which end with this one however it ends."""
+
+    def __init__(self, workers: int) -> None:
+        self._workers = workers
+        executor, self._leash = _pool(workers)
+        super().__init__(executor, 2 * workers)
+
+    def renew(self) -> None:
+        """A pool is broken for good when one of its processes dies."""
+        self.close()
+        self.executor, self._leash = _pool(self._workers)
+
+    def close(self) -> None:
+        """Workers end when the leash does, those that are only starting included."""
+        self._leash.close()
+        self.executor.shutdown(wait=True, cancel_futures=True)
+
+
+def start_server() -> None:
+    """Begin to load what workers need while this process imports the same for a second.
+
+    The workers are forks of this server, so they need not load it again.
+    """
+    if METHOD == "forkserver":
+        context: Any = multiprocessing.get_context(METHOD)
+        context.set_forkserver_preload([PRELOAD])
+        with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
+            forkserver.ensure_running()
+
+
+def _pool(workers: int) -> tuple[Executor, Connection]:
+    """A pool whose processes are there, and what holds them."""
+    from simmpp.common.compiled import cache_folder
+
+    start_server()
+    context: Any = multiprocessing.get_context(METHOD)
+    held, leash = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
+    interrupts: list[int] = []
+    with _sigint(lambda number, frame: interrupts.append(number)):  # half a process is untidy
+        wait([pool.submit(os.getpid) for _ in range(workers)])
+    if interrupts:
+        leash.close()
+        pool.shutdown()
+        raise KeyboardInterrupt
+    return pool, leash
+
+
+@contextmanager
+def _sigint(handler: Any) -> Iterator[None]:
+    """Another answer to Ctrl-C, where there is one: in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _begin(held: Connection, cache: str) -> None:
+    """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
+    os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(held,), daemon=True).start()
+
+
+def _end_with(held: Connection) -> None:
+    try:
+        held.recv_bytes()
+    except (EOFError, OSError):
+        os._exit(1)
+
+
+# --- the crew that a user asks for: this process, others beside it, or a cluster ---
+
+
+def crew_for(workers: int, cluster: str | None) -> Crew:
+    """A cluster's workers, or that many processes; one works right here.
+
+    Raises ConfigError if there is no such cluster.
+    """
+    if cluster is not None:
+        return Cluster(cluster)
+    return Crew(Here(), 1) if workers == 1 else Processes(workers)
+
+
+# --- the workers of a Dask cluster, which may be on other machines ---
+
+
+CONNECT_S, WORKERS_S = 10, 60
+"""Seconds to wait for a cluster's scheduler, and for its first worker."""
+
+
+class Cluster(Crew):
+    """The workers of a Dask scheduler, which gives the tasks of a dead worker to others itself."""
+
+    is_elsewhere = True
+
+    def __init__(self, address: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ConfigError(
+                "--cluster: needs Dask's distributed: pip install 'simmpp[cluster]'"
+            ) from None
+        try:
+            client: Any = Client  # has no types
+            with ThreadPoolExecutor(1) as apart:  # from the event loop of a notebook
+                apart.submit(asyncio.run, _reach(address)).result()
+            self._client = client(address, timeout=CONNECT_S, set_as_default=False)
+            self._client.wait_for_workers(1, timeout=WORKERS_S)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ConfigError(f"--cluster: value {address!r}: {_line(error)}") from None
+        threads = sum(self._client.nthreads().values())
+        super().__init__(self._client.get_executor(pure=False), 2 * threads)
+
+    def close(self) -> None:
+        """Leave the cluster as it was."""
+        self.executor.shutdown(wait=False)  # cancels what is in flight
+        self._client.close()
+
+
+async def _reach(address: str) -> None:
+    """Raise OSError or ValueError unless a scheduler can be reached there.
+
+    Asked before a Client is made: one that fails leaves a traceback behind.
+    """
+    from distributed import Security
+    from distributed.comm import connect
+
+    security: Any = Security()  # from Dask's own configuration, as a Client's
+    link = await connect(address, timeout=CONNECT_S, **security.get_connection_args("client"))
+    link.abort()
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

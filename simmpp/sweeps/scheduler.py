@@ -1,0 +1,73 @@
+"""Running tasks on an executor: a few in flight at a time, none lost when a worker dies."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+
+from simmpp.common.errors import ConfigError
+from simmpp.run.provenance import result_versions
+from simmpp.sweeps.executors import Crew
+from simmpp.sweeps.journal import Outcome
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
+
+WORKER_DIED = "the worker died (out of memory?)"
+
+
+def outcomes(waiting: deque[Task], crew: Crew, timeout_s: float | None) -> Iterator[Outcome]:
+    """The outcome of each task, in the order in which they are finished.
+
+    Tasks are taken from the left; whoever gets an outcome may add further ones on the right.
+
+    When a worker dies, those in flight are run again one at a time, so that the one at fault is
+    found and only that one fails.
+    """
+    suspects = deque[Task]()
+    flying: dict[Future[Outcome], Task] = {}
+    while waiting or suspects or flying:
+        alone = bool(suspects)
+        queue, room = (suspects, 1) if alone else (waiting, crew.most_in_flight)
+        while queue and len(flying) < room:
+            task = queue.popleft()
+            flying[_submit(crew, task, timeout_s)] = task
+        lost: list[Task] = []
+        for future in wait(flying, return_when=FIRST_COMPLETED).done:
+            task = flying.pop(future)
+            outcome = _result(future, task)
+            if outcome is None:
+                lost.append(task)
+            else:
+                yield outcome
+        if lost:
+            lost += flying.values()
+            flying.clear()
+            crew.renew()
+            if alone:
+                yield from (Outcome(task.key, error=WORKER_DIED) for task in lost)
+            else:
+                suspects.extend(lost)
+
+
+def _submit(crew: Crew, task: Task, timeout_s: float | None) -> Future[Outcome]:
+    """Give a task out; to a broken executor it is lost like those already in flight."""
+    try:
+        versions = result_versions() if crew.is_elsewhere else None
+        return crew.executor.submit(run_task, task, timeout_s, versions)
+    except BrokenExecutor as error:
+        future: Future[Outcome] = Future()
+        future.set_exception(error)
+        return future
+
+
+def _result(future: Future[Outcome], task: Task) -> Outcome | None:
+    """What came back; None if the executor broke."""
+    try:
+        return future.result()
+    except BrokenExecutor:
+        return None
+    except CancelledError:
+        raise ConfigError("--cluster: the scheduler is gone; what is finished is kept") from None
+    except Exception as error:  # a Dask worker that died again and again, a task it can't read
+        return Outcome(task.key, error=" ".join(f"{type(error).__name__}: {error}".split()))

@@ -1,0 +1,1 @@
+"""Workloads kept between runs."""

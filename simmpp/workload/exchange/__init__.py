@@ -1,0 +1,1 @@
+"""Workloads of other programs, as tables."""

@@ -1,0 +1,197 @@
+"""Workloads from other renderers, and for other tools: rays x objects in Parquet or npz.
+
+A workload is two tables. In Parquet they are two files, ``forest.parquet`` (rays) and
+``forest.objects.parquet`` (objects); the first is the one to name. In npz they are arrays of one
+file, ``ray_parent``, ``object_bytes`` and so on. Rows count from 0 and may be in any order.
+
+Rays, one row each:
+
+========== ====================== ============================================ ==================
+column     type                   meaning                                      default
+========== ====================== ============================================ ==================
+itinerary  list of integers       rows of the objects that the ray is tested   (required)
+                                  against, front to back, each once; in npz
+                                  ``itinerary_offsets`` (rays + 1 integers
+                                  from 0) and ``itinerary_objects``
+parent     integer                row of the ray that spawned it; -1 or null   -1
+                                  for a primary ray
+kind       text, or integer 0-3   primary, reflected, refracted or shadow      primary without a
+                                                                               parent, else
+                                                                               reflected
+pixel      integer                place of a primary ray in the picture, row   order of the rows
+                                  by row (pixels are dealt to PEs in this
+                                  order; several rays may share one); of
+                                  others -1 or their primary ray's
+hit        integer                row of the object hit, one of the            last of the
+                                  itinerary; -1 or null for none               itinerary of rays
+                                                                               with children,
+                                                                               else -1
+distance   number, scene units    distance of that hit; not read without       0
+========== ====================== ============================================ ==================
+
+Objects, one row each:
+
+========== ====================== ============================================ ==================
+bytes      integer, bytes         size on the wire and in memory, 0 to 2^40    (required)
+kind       text, or integer 0-3   sphere, cone, polygon or mesh: chooses the   mesh
+                                  machine's cost of a test
+triangles  integer                triangles, for the same                      0 (as 1)
+test_ps    integer, picoseconds   cost of one test, 0 to 10 s, in place of     the machine's
+                                  the machine's
+x, y, z    number, scene units    centre of the object; owners are placed by   0
+                                  it (equal centres: by row)
+========== ====================== ============================================ ==================
+
+``picture``, two integers (an array of npz; in Parquet the value ``512 512`` of the key ``picture``
+of the schema's metadata), gives rows and columns of primary rays; default 1 and their number. Only
+the placement of pixels in tiles reads it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.errors import WorkloadError
+from simmpp.common.units import LONGEST_PS
+from simmpp.workload.check import check
+from simmpp.workload.exchange import npz
+from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.rays import rays_of
+from simmpp.workload.workload import MESH, OBJECT_KINDS, RAY_KINDS, Workload, frozen
+
+SUFFIXES = (".parquet", ".npz")
+OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
+MOST_BYTES = 2**40
+"""A TiB for one object; the sum of all stays far from the end of int64."""
+UNREADABLE = (
+    *(OSError, ValueError, TypeError, KeyError, EOFError, MemoryError, OverflowError),
+    *(NotImplementedError, RuntimeError, zipfile.BadZipFile),
+)
+"""What numpy, zipfile and (by their bases) pyarrow raise for a file that is not what it seems."""
+
+
+def import_workload(path: str | os.PathLike[str]) -> Workload:
+    """The workload in the tables at ``path``; its name is the file's.
+
+    Raises WorkloadError, one line that names file, column, row, value and what was expected.
+    """
+    path = Path(path)
+    tables = _read(path)
+    arrays = rays_of(tables.rays, tables.objects.rows) | _objects_of(tables.objects)
+    picture = _picture(tables, int((arrays["parents"] < 0).sum()))
+    digest = hashlib.sha256(repr(picture).encode())
+    for name in sorted(arrays):
+        digest.update(f"{name} {arrays[name].shape}".encode())
+        digest.update(np.ascontiguousarray(arrays[name]).data)
+    workload = frozen(
+        Workload(name=path.stem, digest=digest.hexdigest(), picture=picture, **arrays)
+    )
+    check(workload, str(path))
+    return workload
+
+
+def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
+    """Write a workload as tables; in Parquet the objects go into the file beside the rays.
+
+    Raises WorkloadError if the name ends in neither .parquet nor .npz, OSError if it can't be
+    written.
+    """
+    path = Path(path)
+    prefixes = (npz.RAY, npz.OBJECT) if _is_npz(path) else ("", "")
+    finite = np.isfinite(workload.hit_distances)
+    x, y, z = workload.object_centroids.T
+    rays: dict[str, Column] = {
+        "itinerary_offsets": workload.itinerary_offsets,
+        "itinerary_objects": workload.itinerary_objects,
+        "parent": workload.parents,
+        "kind": np.array(RAY_KINDS)[workload.kinds],
+        "pixel": workload.pixels,
+        "hit": workload.hits,
+        "distance": np.where(finite, workload.hit_distances, 0.0),
+    }
+    objects: dict[str, Column] = {
+        "bytes": workload.object_bytes,
+        "kind": np.array(OBJECT_KINDS)[workload.object_kinds],
+        "triangles": workload.object_triangles,
+        **({"test_ps": workload.object_test_ps} if len(workload.object_test_ps) else {}),
+        **{"x": x, "y": y, "z": z},
+    }
+    tables = Tables(
+        Table(str(path), prefixes[0], workload.n_rays, rays),
+        Table(str(path), prefixes[1], workload.n_objects, objects),
+        np.array(workload.picture),
+    )
+    _format(path).write(tables, path)
+
+
+def is_workload(name: str) -> bool:
+    """Whether a file's name says that it holds a workload."""
+    return name.lower().endswith(SUFFIXES)
+
+
+def _is_npz(path: Path) -> bool:
+    return path.suffix.lower() == ".npz"
+
+
+def _format(path: Path) -> Any:
+    """The module that reads and writes such files."""
+    if not is_workload(path.name):
+        raise WorkloadError(f"expected a file {' or '.join(SUFFIXES)}", where=str(path))
+    if _is_npz(path):
+        return npz
+    from simmpp.workload.exchange import parquet  # pyarrow takes a third of a second
+
+    return parquet
+
+
+def _read(path: Path) -> Tables:
+    tables = _format(path)
+    if not path.is_file():
+        raise WorkloadError("there is no such file", where=str(path))
+    try:
+        read: Tables = tables.read(path)
+    except UNREADABLE as error:
+        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        line = " ".join(reason.split())[:200]
+        raise WorkloadError(f"can't be read: {line}", where=str(path)) from None
+    return read
+
+
+def _objects_of(table: Table) -> dict[str, NDArray[Any]]:
+    """The fields of a workload that hold objects."""
+    table.known(OBJECT_COLUMNS, required=("bytes",))
+    mesh = np.full(table.rows, MESH, np.uint8)
+    sizes = table.integers("bytes", 0, MOST_BYTES, 0, "a size from 0 to 2^40 bytes")
+    costs = table.integers("test_ps", 0, LONGEST_PS, 0, "a time from 0 to 10 s in picoseconds")
+    if sizes.sum(dtype=np.float64) > MOST_BYTES * 2.0**20:
+        table.fail("bytes", "the sum is beyond 2^60")
+    return {
+        "object_kinds": table.choices("kind", OBJECT_KINDS, mesh),
+        "object_triangles": table.integers("triangles", 0, MOST_ROWS, 0).astype(np.int32),
+        "object_bytes": sizes,
+        "object_centroids": np.stack([table.numbers(axis) for axis in "xyz"], axis=1),
+        "object_test_ps": costs if "test_ps" in table.columns else costs[:0],
+    }
+
+
+def _picture(tables: Tables, n_primaries: int) -> tuple[int, int]:
+    """Rows and columns of primary rays."""
+    if tables.picture is None:
+        return 1, n_primaries
+    sides = tables.picture
+    whole = sides.dtype.kind in "iu" and sides.shape == (2,) and (sides > 0).all()
+    rows, columns = (int(side) for side in sides) if whole else (0, 0)
+    if rows * columns != n_primaries:
+        shown = " ".join(map(str, sides.tolist()))[:40]
+        raise WorkloadError(
+            f"picture: value {shown}: expected rows and columns of the {n_primaries} primary rays",
+            where=tables.rays.where,
+        )
+    return rows, columns

@@ -1,0 +1,68 @@
+"""Rays and objects as the arrays of one npz file, which needs nothing but numpy to write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from simmpp.common.errors import WorkloadError
+from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+
+RAY, OBJECT, PICTURE = "ray_", "object_", "picture"
+"""Beginnings of the names of arrays, and the one array that is of no table."""
+ITINERARIES = ("itinerary_offsets", "itinerary_objects")
+
+
+def read(path: Path) -> Tables:
+    """Both tables; raises WorkloadError or whatever numpy and zipfile raise for a bad file."""
+    where = str(path)
+    file = np.load(path, allow_pickle=False)
+    if not isinstance(file, np.lib.npyio.NpzFile):
+        raise WorkloadError("expected an npz of several arrays, found one array", where=where)
+    with file:
+        arrays: dict[str, Column] = {name: file[name] for name in file.files}
+    for name, array in arrays.items():
+        if array.ndim != 1:
+            raise WorkloadError(
+                f"array {name}: it has {array.ndim} dimensions, expected 1", where=where
+            )
+    picture = arrays.pop(PICTURE, None)
+    itineraries = {name: arrays.pop(name) for name in ITINERARIES if name in arrays}
+    if len(itineraries) < 2:
+        raise WorkloadError(f"expected the arrays {' and '.join(ITINERARIES)}", where=where)
+    n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
+    rays = _table(where, RAY, arrays, n_rays)
+    rays.columns.update(itineraries)
+    objects = _table(where, OBJECT, arrays, len(arrays.get("object_bytes", ())))
+    for name in arrays:
+        if not name.startswith((RAY, OBJECT)):
+            raise WorkloadError(f"array {name[:40]!r}: it is unknown", where=where)
+    return Tables(rays, objects, picture)
+
+
+def write(tables: Tables, path: Path) -> None:
+    """Write both tables into one uncompressed file."""
+    arrays = dict(tables.rays.columns)
+    named = {name: arrays.pop(name) for name in ITINERARIES}
+    for table, columns in ((tables.rays, arrays), (tables.objects, tables.objects.columns)):
+        named |= {table.prefix + name: column for name, column in columns.items()}
+    if tables.picture is not None:
+        named[PICTURE] = tables.picture
+    with open(path, "wb") as file:
+        np.savez(file, allow_pickle=False, **named)
+
+
+def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> Table:
+    if rows > MOST_ROWS:
+        raise WorkloadError(f"{rows} rows: expected at most {MOST_ROWS}", where=where)
+    columns = {
+        name.removeprefix(prefix): array
+        for name, array in arrays.items()
+        if name.startswith(prefix)
+    }
+    table = Table(where, prefix, rows, columns)
+    for name, column in columns.items():
+        if len(column) != rows:
+            table.fail(name, f"it has {len(column)} entries, expected {rows}")
+    return table

@@ -1,0 +1,127 @@
+"""Rays as another renderer tells them, checked and numbered as a workload wants them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.workload.exchange.columns import Table
+from simmpp.workload.exchange.numbering import first_repeat, generations, regrouped, row_in_cycle
+from simmpp.workload.workload import PRIMARY, RAY_KINDS, REFLECTED, SHADOW
+
+ITINERARY = ("itinerary_offsets", "itinerary_objects")
+COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
+
+Ints = NDArray[np.int64]
+
+
+def rays_of(table: Table, n_objects: int) -> dict[str, NDArray[Any]]:
+    """The fields of a workload that hold rays; raises WorkloadError for what makes no sense."""
+    table.known((*COLUMNS, *ITINERARY), required=ITINERARY)
+    n = table.rows
+    parents = table.integers("parent", -1, n - 1, -1, f"-1 or a row from 0 to {n - 1}")
+    kinds = table.choices("kind", RAY_KINDS, np.where(parents < 0, PRIMARY, REFLECTED))
+    _check_kinds(table, parents, kinds)
+    offsets, objects = _itineraries(table, n_objects)
+    n_children = np.bincount(parents[parents >= 0], minlength=n)
+    hits = _hits(table, offsets, objects, n_children, n_objects)
+    distances = np.where(hits < 0, np.inf, _distances(table, hits))
+    order, roots = _numbered(table, parents, kinds)
+    number = np.empty(n, np.int64)
+    number[order] = np.arange(n)
+    new_offsets, entries = regrouped(offsets, order)
+    first_children = int((parents < 0).sum()) + np.cumsum(n_children[order])
+    return {
+        "kinds": kinds[order],
+        "parents": np.where(parents < 0, -1, number[parents])[order].astype(np.int32),
+        "child_offsets": np.append(first_children - n_children[order], n).astype(np.int32),
+        "pixels": number[roots].astype(np.int32),
+        "hits": hits[order].astype(np.int32),
+        "hit_distances": distances[order],
+        "itinerary_offsets": new_offsets,
+        "itinerary_objects": objects[entries].astype(np.int32),
+    }
+
+
+def _check_kinds(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> None:
+    if (parents >= 0).all():
+        table.fail("parent", "there is no primary ray: expected -1 in at least one row")
+    wrong = np.flatnonzero((kinds == PRIMARY) != (parents < 0))
+    if len(wrong):
+        row = int(wrong[0])
+        has = f"has parent {parents[row]}" if parents[row] >= 0 else "has no parent"
+        table.fail("kind", f"a {RAY_KINDS[kinds[row]]} ray {has}", row)
+    spawned = np.flatnonzero(parents >= 0)
+    wrong = spawned[kinds[parents[spawned]] == SHADOW]
+    if len(wrong):
+        row = int(wrong[0])
+        problem = f"value {parents[row]}: expected no shadow ray, which spawns nothing"
+        table.fail("parent", problem, row)
+
+
+def _itineraries(table: Table, n_objects: int) -> tuple[Ints, Ints]:
+    """Offsets and objects, once they are found to fit the rays and the objects."""
+    offsets, objects = (table.columns[name] for name in ITINERARY)
+    for column in (offsets, objects):
+        if column.dtype.kind not in "iu":
+            table.fail("itinerary", f"it holds {column.dtype}, expected integers")
+    offsets = offsets.astype(np.int64)
+    if offsets[0] != 0 or offsets[-1] != len(objects) or (np.diff(offsets) < 0).any():
+        table.fail("itinerary", f"offsets don't rise from 0 to the {len(objects)} objects' number")
+    outside = (objects < 0) | (objects >= n_objects)
+    if outside.any():
+        at = int(np.argmax(outside))
+        row = int(np.searchsorted(offsets, at, side="right")) - 1
+        expected = f"a row of the {n_objects} objects" if n_objects else "nothing: no objects"
+        table.fail("itinerary", f"value {objects[at]}: expected {expected}", row)
+    objects = objects.astype(np.int64)
+    row, twice = first_repeat(offsets, objects, n_objects)
+    if row >= 0:
+        table.fail("itinerary", f"object {twice} occurs twice: expected each once", row)
+    return offsets, objects
+
+
+def _hits(table: Table, offsets: Ints, objects: Ints, n_children: Ints, n_objects: int) -> Ints:
+    """The object hit by each ray, -1 for none: (n,) int64."""
+    spawners, empty = n_children > 0, np.diff(offsets) == 0
+    wrong = spawners & empty
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        table.fail("itinerary", "it is empty: a ray that spawns others has hit an object", row)
+    if "hit" not in table.columns:
+        hits = np.full(table.rows, -1, np.int64)
+        hits[spawners] = objects[offsets[1:][spawners] - 1]
+        return hits
+    hits = table.integers("hit", -1, n_objects - 1, -1, f"-1 or a row of the {n_objects} objects")
+    rows = np.repeat(np.arange(table.rows), np.diff(offsets))
+    tested = hits < 0
+    tested[rows[objects == hits[rows]]] = True
+    table.require(tested, "hit", "an object of the itinerary")
+    table.require(~spawners | (hits >= 0), "hit", "an object: the ray spawns others")
+    return hits
+
+
+def _distances(table: Table, hits: Ints) -> NDArray[np.float64]:
+    distances = table.numbers("distance", where=hits >= 0)
+    if "distance" in table.columns:
+        table.require((distances >= 0) | (hits < 0), "distance", "a distance of at least 0")
+    return distances
+
+
+def _numbered(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> tuple[Ints, Ints]:
+    """Rows in their new order, and the row of each one's primary ray."""
+    pixels = table.integers("pixel", -1, 2**62, -1, "a place in the picture, or -1")
+    given = "pixel" in table.columns
+    if given:
+        table.require((pixels >= 0) | (parents >= 0), "pixel", "a primary ray's place from 0")
+    order, roots = generations(parents, kinds, pixels)
+    if len(order) < table.rows:
+        row = row_in_cycle(parents, order)
+        table.fail("parent", f"value {parents[row]}: the ray is its own ancestor", row)
+    wrong = np.flatnonzero((pixels[order] != pixels[roots]) & (pixels[order] >= 0))
+    if given and len(wrong):
+        row = int(order[wrong].min())
+        table.fail("pixel", f"value {pixels[row]}: its primary ray has another", row)
+    return order, roots

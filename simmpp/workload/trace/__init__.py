@@ -1,0 +1,1 @@
+"""Rays of a scene: Embree proposes, float64 decides."""

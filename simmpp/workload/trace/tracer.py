@@ -1,0 +1,202 @@
+"""Traces a picture into a workload: generation by generation, in batches of rays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.compiled import njit
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import format_bytes
+from simmpp.scene.boxes import boxes
+from simmpp.scene.check import check_scene
+from simmpp.scene.scene import Scene
+from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.workload.digest import digest_of
+from simmpp.workload.picture import Picture
+from simmpp.workload.trace.embree import Intersector
+from simmpp.workload.trace.frame import Frame, frame_of
+from simmpp.workload.trace.generations import Rays, children, first_generation, joined, spawning
+from simmpp.workload.trace.geometry import Geometry, flatten
+from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.workload import SHADOW, Workload, frozen
+
+BATCH = 65536
+"""Rays of one batch: bounds the memory of what is only passing through."""
+BYTES_PER_RAY = 100
+"""Memory that every primary ray takes at least: two vectors with their temporaries, numbers."""
+MOST_RAYS = 2**31 - 1
+"""Ray numbers are int32."""
+Number = TypeVar("Number", bound=np.generic)
+Integer = TypeVar("Integer", np.int32, np.int64)
+Progress = Callable[[int, int], None]
+"""Is told the rays done and the rays known so far."""
+
+
+class Batch(NamedTuple):
+    """What is recorded of a run of rays, in workload order."""
+
+    kinds: NDArray[np.uint8]
+    parents: NDArray[np.int32]
+    """Ray numbers; -1 for primary rays."""
+    n_children: NDArray[np.int32]
+    hits: NDArray[np.int32]
+    distances: NDArray[np.float64]
+    """Normalised."""
+    n_tests: NDArray[np.int32]
+    """Lengths of the itineraries."""
+    objects: NDArray[np.int32]
+    """The itineraries, one after the other."""
+
+
+def trace(
+    scene: Scene,
+    picture: Picture,
+    progress: Progress | None = None,
+    intersector: Callable[[Geometry], Intersector] = Intersector,
+) -> Workload:
+    """All rays of ``picture`` with their hits and itineraries.
+
+    Parameters
+    ----------
+    progress : called after each batch with the rays done and the rays known so far
+    intersector : makes the proposals; the workload does not depend on them
+
+    Raises
+    ------
+    SceneError
+        The scene's geometry or camera can't be traced.
+    ConfigError
+        The picture has more than MOST_RAYS rays, or more than the machine's memory holds.
+    """
+    check_scene(scene)
+    rows, columns = picture.shape
+    _require_numbers(rows * columns, scene.name)
+    _require_memory(rows * columns, scene.name)
+    frame = frame_of(scene)
+    geometry = flatten(scene, frame)
+    rules = spawning(scene, picture, frame, geometry)
+    rays = first_generation(scene, picture, frame)
+    proposer = intersector(geometry)
+    batches: list[Batch] = []
+    start = depth = 0
+    while len(rays.kinds):
+        depth += 1
+        known = end = start + len(rays.kinds)
+        spawned = []
+        for low in range(start, end, BATCH):
+            part = rays.part(low - start, low - start + BATCH)
+            hits, distances, n_tests, objects = _intersected(geometry, proposer, part)
+            young, n_children = children(geometry, part, hits, distances, rules, depth, low)
+            spawned.append(young)
+            known += len(young.kinds)
+            _require_numbers(known, scene.name)
+            batches.append(
+                Batch(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
+            )
+            if progress:
+                progress(low + len(part.kinds), known)
+        start, rays = end, joined(spawned)
+    return _workload(scene, picture, geometry, frame, batches)
+
+
+def _require_numbers(n_rays: int, name: str) -> None:
+    if n_rays > MOST_RAYS:
+        problem = f"the picture has more than {MOST_RAYS} rays: lower its resolution or max_depth"
+        raise ConfigError(problem, where=name)
+
+
+def _require_memory(n_primaries: int, name: str) -> None:
+    """Refuse at once what would end in the system's killing the process, minutes later."""
+    if not hasattr(os, "sysconf"):  # Windows
+        return
+    memory_bytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if n_primaries * BYTES_PER_RAY > memory_bytes:
+        takes = f"{n_primaries} primary rays take {format_bytes(n_primaries * BYTES_PER_RAY)}"
+        problem = f"{takes}, there are {format_bytes(memory_bytes)}: expected a lower resolution"
+        raise ConfigError(problem, where=name)
+
+
+def _intersected(
+    geometry: Geometry, proposer: Intersector, rays: Rays
+) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    """Hits, normalised distances, lengths of the itineraries, and the itineraries of a batch."""
+    claims = np.full((len(rays.kinds), 2), -1, dtype=np.int32)
+    asks = rays.kinds != SHADOW
+    claims[asks] = proposer.claims(rays.origins[asks], rays.directions[asks])
+    hits, distances, n_tests, objects = find_itineraries(
+        geometry.shapes,
+        rays.origins,
+        rays.directions,
+        rays.kinds,
+        rays.limits,
+        rays.sources,
+        claims,
+    )
+    return hits, distances, n_tests, objects
+
+
+def _workload(
+    scene: Scene,
+    picture: Picture,
+    geometry: Geometry,
+    frame: Frame,
+    batches: list[Batch],
+) -> Workload:
+    lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
+    batches.clear()  # so that _emptied frees what it has copied
+    kinds, parents, n_children, hits, distances, n_tests, objects = map(_emptied, lists)
+    rows, columns = picture.shape
+    bounds = boxes(scene.objects, frame.origin)
+    return frozen(
+        Workload(
+            name=scene.name,
+            digest=digest_of(scene, picture),
+            picture=picture.shape,
+            kinds=kinds,
+            parents=parents,
+            child_offsets=_offsets(n_children, rows * columns, np.int32),
+            pixels=pixels_of(parents),
+            hits=hits,
+            hit_distances=frame.scene_lengths(distances),
+            itinerary_offsets=_offsets(n_tests, 0, np.int64),
+            itinerary_objects=objects,
+            object_kinds=geometry.kinds,
+            object_triangles=geometry.n_triangles,
+            object_bytes=np.array([bytes_on_the_wire(item) for item in scene.objects], np.int64),
+            object_centroids=frame.rounded(bounds.mean(axis=1)),
+        )
+    )
+
+
+def _emptied(parts: list[NDArray[Number]]) -> NDArray[Number]:
+    """All parts, one after the other; the list is left empty, so they are not held twice."""
+    whole = np.empty(sum(map(len, parts)), parts[0].dtype)
+    end = len(whole)
+    while parts:
+        part = parts.pop()
+        whole[end - len(part) : end] = part
+        end -= len(part)
+    return whole
+
+
+def _offsets(counts: NDArray[np.int32], first: int, dtype: type[Integer]) -> NDArray[Integer]:
+    """(n + 1,) where each run of ``counts`` begins, and where the last one ends."""
+    offsets = np.empty(len(counts) + 1, dtype=dtype)
+    offsets[0] = first
+    np.cumsum(counts, out=offsets[1:])
+    offsets[1:] += dtype(first)
+    return offsets
+
+
+@njit
+def pixels_of(parents: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The primary ray at the root of each ray's tree, (n,) int32."""
+    pixels = np.empty(len(parents), np.int32)
+    for i in range(len(parents)):
+        pixels[i] = i if parents[i] < 0 else pixels[parents[i]]
+    return pixels

@@ -1,0 +1,195 @@
+"""Did the simulated processors make the picture? Their tests are done again, one by one.
+
+Only the (ray, object) pairs that they tested are intersected, exactly and object by object; what
+these find must be what the workload records, ray by ray, and give the sequential picture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.compiled import njit
+from simmpp.scene.scene import Scene
+from simmpp.workload.picture import Picture
+from simmpp.workload.trace.exact import entry, hit_object, ray_of
+from simmpp.workload.trace.generations import Rays
+from simmpp.workload.trace.geometry import Geometry
+from simmpp.workload.trace.itineraries import work_for
+from simmpp.workload.trace.replay import SpawnError, Traced, generations, traced
+from simmpp.workload.trace.shading import shade
+from simmpp.workload.workload import SHADOW, Workload
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first difference between the sequential picture and that of the tests."""
+
+    row: int
+    column: int
+    reason: str
+    expected: tuple[int, int, int] | None = None
+    """Colour of the pixel in the sequential picture; equal to ``obtained`` if only tests differ;
+    None if the workload records no picture."""
+    obtained: tuple[int, int, int] | None = None
+
+    def __str__(self) -> str:
+        colours = f"expected {self.expected}, got {self.obtained}: " if self.expected else ""
+        return f"pixel ({self.row}, {self.column}): {colours}{self.reason}"
+
+
+def verify(
+    scene: Scene, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
+) -> Difference | None:
+    """The first difference, or None if the tests make the recorded picture, bit for bit.
+
+    Parameters
+    ----------
+    tested_rays, tested_objects : (k,) int32, the tests that were made, in any order
+
+    Raises
+    ------
+    WorkloadError
+        The workload is not of this scene and picture.
+    """
+    replayed = traced(scene, picture, workload)
+    try:
+        return _compared(replayed, tested_rays, tested_objects)
+    except SpawnError as error:
+        return Difference(*_pixel_of(error.ray, replayed), error.problem)
+
+
+def _compared(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> Difference | None:
+    workload = replayed.workload
+    problem = _wrong_test(workload, tested_rays, tested_objects)
+    hits, distances = _hits_of_tests(replayed, *_existing(workload, tested_rays, tested_objects))
+    wrong = (hits != workload.hits) | (distances != workload.hit_distances)
+    if problem is None and wrong.any():
+        ray = int(wrong.argmax())
+        found = f"its tests hit object {hits[ray]} at {distances[ray]!r}"
+        recorded = f"{workload.hits[ray]} at {workload.hit_distances[ray]!r} is recorded"
+        problem = ray, f"ray {ray}: {found}, {recorded}"
+    return _difference(replayed, hits, problem)
+
+
+def rays_from_tests(
+    scene: Scene, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
+) -> tuple[Ints, Floats]:
+    """What the tests find: hits (n,) int32, -1 for none, and distances (n,) float64, scene units.
+
+    A ray takes the nearest hit of its tests, a shadow ray the blocker whose box it enters first,
+    ties by object. Rays are recomputed generation by generation from the recorded hits, so the
+    answer of a ray is meaningful if its ancestors' hits are the recorded ones.
+    """
+    replayed = traced(scene, picture, workload)
+    return _hits_of_tests(replayed, *_existing(workload, tested_rays, tested_objects))
+
+
+def _hits_of_tests(
+    replayed: Traced, tested_rays: Ints, tested_objects: Ints
+) -> tuple[Ints, Floats]:
+    workload = replayed.workload
+    hits, distances = np.full(workload.n_rays, -1, np.int32), np.full(workload.n_rays, np.inf)
+    places = np.full(workload.n_rays, np.inf)
+    for start, rays in generations(replayed):
+        stop = start + len(rays.kinds)
+        mine = np.flatnonzero((tested_rays >= start) & (tested_rays < stop))
+        by_object = mine[np.argsort(tested_objects[mine], kind="stable")]
+        _intersect_pairs(
+            replayed.geometry,
+            rays,
+            tested_rays[by_object] - np.int32(start),
+            tested_objects[by_object],
+            hits[start:stop],
+            distances[start:stop],
+            places[start:stop],
+        )
+    return hits, replayed.frame.scene_lengths(distances)
+
+
+@njit
+def _intersect_pairs(
+    geometry: Geometry,
+    rays: Rays,
+    tested_rays: Ints,
+    tested_objects: Ints,
+    hits: Ints,
+    distances: Floats,
+    places: Floats,
+) -> None:
+    """Intersect pairs of a generation; the first hit of each ray is that of the least place."""
+    work = work_for(geometry.shapes)
+    stack, found = work.inner_stack, work.inner_found
+    for k in range(len(tested_rays)):
+        i, o = tested_rays[k], tested_objects[k]
+        ray = ray_of(rays.origins, rays.directions, i)
+        enter = entry(geometry.boxes, o, ray)
+        t, _ = hit_object(geometry.shapes, o, ray, enter, np.inf, stack, found)
+        if o == rays.sources[i] or not t < rays.limits[i]:
+            continue
+        place = enter if rays.kinds[i] == SHADOW else t
+        if place < places[i] or (place == places[i] and o < hits[i]):
+            hits[i], distances[i], places[i] = o, t, place
+
+
+def _existing(workload: Workload, tested_rays: Ints, tested_objects: Ints) -> tuple[Ints, Ints]:
+    """The tests of rays and objects that there are."""
+    rays = (tested_rays >= 0) & (tested_rays < workload.n_rays)
+    objects = (tested_objects >= 0) & (tested_objects < workload.n_objects)
+    return tested_rays[rays & objects], tested_objects[rays & objects]
+
+
+def _wrong_test(
+    workload: Workload, tested_rays: Ints, tested_objects: Ints
+) -> tuple[int, str] | None:
+    """The first ray that misses a test of its itinerary or has one too many; None if none does."""
+    tested = np.int64(1 << 32) * tested_rays + tested_objects
+    rays = np.repeat(np.arange(workload.n_rays), np.diff(workload.itinerary_offsets))
+    expected = np.sort(np.int64(1 << 32) * rays + workload.itinerary_objects)
+    tested.sort()
+    common = min(len(tested), len(expected))
+    differs = np.flatnonzero(tested[:common] != expected[:common])
+    first = int(differs[0]) if len(differs) else common
+    if first == max(len(tested), len(expected)):
+        return None
+    extra = first == len(expected) or (first < len(tested) and tested[first] < expected[first])
+    pair = int(tested[first] if extra else expected[first])
+    ray, item = pair >> 32, pair & 0xFFFFFFFF
+    problem = (
+        "is tested against object {}, once too often"
+        if extra
+        else "is never tested against object {}"
+    )
+    return ray, f"ray {ray} " + problem.format(item)
+
+
+def _difference(replayed: Traced, hits: Ints, problem: tuple[int, str] | None) -> Difference | None:
+    """Where the pictures differ first, else where the ray of ``problem`` belongs."""
+    expected, obtained = shade(replayed, replayed.workload.hits.copy()), shade(replayed, hits)
+    places = np.argwhere((expected != obtained).any(axis=2))
+    if problem is None and not len(places):
+        return None
+    ray, reason = problem or (0, "the pictures differ")
+    row, column = (int(k) for k in places[0]) if len(places) else _pixel_of(ray, replayed)
+    return Difference(
+        row, column, reason, _colour(expected[row, column]), _colour(obtained[row, column])
+    )
+
+
+def _pixel_of(ray: int, replayed: Traced) -> tuple[int, int]:
+    """Row and column of the picture that a ray belongs to."""
+    workload = replayed.workload
+    pixel = int(workload.pixels[min(max(ray, 0), workload.n_rays - 1)])
+    last = replayed.picture.resolution - 1
+    row, column = divmod(pixel, workload.picture[1])
+    return min(row, last), min(column, last)
+
+
+def _colour(pixel: NDArray[np.uint8]) -> tuple[int, int, int]:
+    red, green, blue = (int(channel) for channel in pixel)
+    return red, green, blue

@@ -1,0 +1,347 @@
+"""The commands as a user meets them: output, files, exit codes, one line for every mistake."""
+
+import csv
+import dataclasses
+import gzip
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from simmpp.cli import main
+from simmpp.commands.options import window_of
+from simmpp.common.compiled import cache_folder
+from simmpp.common.errors import ConfigError, ModelError
+from simmpp.methods.columns import COLUMNS
+
+COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
+"""Compiled code is shared with the other tests; workloads are not."""
+
+CONFIG = """
+scene: tetra:2
+picture: {resolution: 12}
+processors: 4
+memory: {fraction: 0.3}
+policy: [ray, concurrent]
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SIMMPP_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", COMPILED)
+    Path("c.yaml").write_text(CONFIG)
+
+
+def simmpp(*arguments: str) -> Result:
+    return CliRunner().invoke(main, arguments)
+
+
+def refused(*arguments: str) -> str:
+    """The one line on the error output of a command that exits with 2."""
+    done = simmpp(*arguments)
+    assert done.exit_code == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    return line
+
+
+def test_run_prints_every_policy_with_reference_and_ceiling() -> None:
+    done = simmpp("run", "c.yaml")
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("tetra:2: 12 x 12 primary rays")
+    assert lines[3].split() == ["object", "ray", "concurrent", "replicated"]
+    (profit,) = [line for line in lines if line.startswith("time profit")]
+    assert profit.split()[2] == "1.000"
+    assert any(line.startswith("bound: total compute / 4 = ") for line in lines)
+    assert done.stderr == ""
+
+
+def test_run_says_when_a_rule_never_fired() -> None:
+    done = simmpp("run", "c.yaml", "--set", "policy={name: concurrent, min_load: 1000000}")
+    assert "concurrent: its send rule never fired" in done.stdout
+
+
+def test_run_writes_rows_and_record() -> None:
+    assert simmpp("run", "c.yaml", "--out", "a/b").exit_code == 0
+    with open("a/b/results.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == COLUMNS
+    assert [row["policy"] for row in rows if row["scene"] == "tetra:2"] == [
+        "concurrent", "object", "ray", "replicated",
+    ]  # fmt: skip
+    assert {row["effective_fraction"] for row in rows if row["policy"] == "replicated"} == {"1.0"}
+    record = json.loads(Path("a/b/run.json").read_text())
+    assert record["config"]["processors"] == 4
+    assert record["machine"]["send_startup_ps"] == 10_000_000
+    for policy in record["policies"]:
+        accounts = zip(*policy["pes"].values(), strict=True)
+        assert {sum(account) for account in accounts} == {policy["makespan_ps"]}
+    assert [policy["named"] for policy in record["policies"]] == [False, True, True, False]
+
+
+def test_verify_and_picture() -> None:
+    done = simmpp("run", "c.yaml", "--verify", "--picture", "p.png")
+    assert done.exit_code == 0, done.output
+    verdicts = [line for line in done.stdout.splitlines() if line.startswith("verify ")]
+    assert len(verdicts) == 4
+    assert all(line.endswith(": the picture of its tests is the same") for line in verdicts)
+    assert Path("p.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_picture_that_differs_fails_and_names_the_pixel(monkeypatch: pytest.MonkeyPatch) -> None:
+    from simmpp.engine.simulate import simulate
+
+    def forgetful(*arguments: object, **options: object) -> object:
+        result = simulate(*arguments, **options)  # type: ignore[arg-type]
+        tests = result.tested_rays, result.tested_objects
+        return dataclasses.replace(result, tested_rays=tests[0][:-9], tested_objects=tests[1][:-9])
+
+    monkeypatch.setattr("simmpp.run.point.simulate", forgetful)
+    done = simmpp("run", "c.yaml", "--verify")
+    assert done.exit_code == 1
+    assert "verify ray: differs: pixel (" in done.stdout
+
+
+def test_a_scene_that_no_ray_hits_is_a_picture_too() -> None:
+    view = "v\nfrom 0 0 0\nat 1 0 0\nup 0 0 1\nangle 45\nhither 1\nresolution 8 8\nl 1 1 1\n"
+    Path("behind.nff").write_text(view + "f 1 1 1 1 0 0 0 0\ns -9 0 0 1\n")
+    done = simmpp("run", "c.yaml", "--set", "scene=behind.nff", "--verify", "--picture", "p.png")
+    assert done.exit_code == 0, done.output
+    assert "144 rays in all, 0 tests" in done.stdout
+
+
+def test_two_runs_write_the_same_rows() -> None:
+    for out in ("a", "b"):
+        simmpp("run", "c.yaml", "--out", out)
+    assert Path("a/results.csv").read_bytes() == Path("b/results.csv").read_bytes()
+
+
+def test_one_pe_needs_no_message_and_no_profit() -> None:
+    done = simmpp("run", "c.yaml", "--set", "processors=1", "--set", "policy=ray")
+    assert done.exit_code == 0, done.output
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("message profit")]
+    assert line.split()[2:] == ["1.000", "1.000", "1.000"]
+
+
+def test_scene_lists_and_writes_nff() -> None:
+    done = simmpp("scene", "tetra:3", "--nff", "t.nff")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("tetra:3: 64 objects (64 polygons)")
+    assert "... and 44 more objects; --objects lists all" in done.stdout
+    again = simmpp("scene", "t.nff", "--objects")
+    assert len(again.stdout.splitlines()) > 64
+    assert "more objects" not in again.stdout
+
+
+def test_machine_prints_sources() -> None:
+    done = simmpp("machine", "t3e")
+    assert done.stdout.startswith("t3e: Cray T3E")
+    assert "340 MB/s" in done.stdout
+    assert "ESTIMATE, range" in done.stdout
+
+
+def test_mistakes() -> None:
+    Path("bad.yaml").write_text("scene: tetra:2\nprocessors: 0\n")
+    Path("bad.nff").write_text("v\nfrom x\n")
+    expected = "expected an integer from 1 to 65536"
+    assert (
+        refused("run", "bad.yaml") == f"simmpp: error: bad.yaml:2: processors: value 0: {expected}"
+    )
+    assert refused("run", "c.yaml", "--set", "processors=0") == (
+        f"simmpp: error: --set processors: value 0: {expected}"
+    )
+    assert refused("run", "none.yaml").startswith("simmpp: error: none.yaml: can't read the file")
+    assert refused("run", "c.yaml", "--engine", "x").startswith(
+        "simmpp: error: --set engine: value"
+    )
+    assert refused("run", "c.yaml", "--set", "method=analytical").startswith(
+        "simmpp: error: --set method: value 'analytical': expected simulate here"
+    )
+    assert refused("run", "c.yaml", "--set", "scene=bad.nff").startswith(
+        "simmpp: error: bad.nff:2:"
+    )
+    assert refused("run", "c.yaml", "--picture", "no/p.png").startswith("simmpp: error: --picture:")
+    assert refused("run", "c.yaml", "--out", "c.yaml").startswith("simmpp: error: --out:")
+    slow = (
+        "--set",
+        "machine.test=10 s",
+        "--set",
+        "picture.resolution=700",
+        "--set",
+        "processors=1",
+    )
+    assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s").startswith(
+        "simmpp: error: the simulated time exceeds the clock's"
+    )
+    assert refused("run", "c.yaml", "--out", "") == (
+        "simmpp: error: --out: value '': expected the name of a file or folder"
+    )
+    assert refused("run", "").startswith("simmpp: error: CONFIG: value ''")
+    assert refused("run", "c.yaml", "--picture", "").startswith(
+        "simmpp: error: --picture: value ''"
+    )
+    assert refused("run", "c.yaml", "--picture", "x.jpg") == (
+        "simmpp: error: --picture: value 'x.jpg': expected a file .png"
+    )
+    assert refused("scene", "tetra:1", "--preview", "q.jpg").endswith("expected a file .png")
+    assert refused("scene", "tetra:1", "--nff", "q.txt").endswith("expected a file .nff")
+    assert refused("model", "c.yaml", "--imbalance", "nan") == (
+        "simmpp: error: --imbalance: value 'nan': expected a finite number"
+    )
+    for endless in ("nan", "inf"):
+        assert refused("sweep", "c.yaml", "--timeout", endless) == (
+            f"simmpp: error: --timeout: value {endless!r}: expected a finite number"
+        )
+        assert refused("model", "c.yaml", "--ratio", f"test={endless}").startswith(
+            f"simmpp: error: --ratio: value 'test={endless}': expected NAME=FACTOR"
+        )
+    assert refused("scene", "tetra:0").startswith("simmpp: error: ")
+    assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")
+    assert refused("machine", "cm5").startswith("simmpp: error: value 'cm5': expected a preset")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+@pytest.mark.parametrize(("command", "name"), [("run", "p.yaml"), ("scene", "p.nff")])
+def test_a_named_pipe_is_refused(command: str, name: str) -> None:
+    os.mkfifo(name)
+    assert refused(command, name) == (
+        f"simmpp: error: {name}: can't read the file: expected a regular file"
+    )
+
+
+def test_run_says_that_it_does_not_sweep() -> None:
+    done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
+    assert done.exit_code == 0, done.output
+    assert done.stderr == (
+        "simmpp: run simulates one point with one seed; the values under 'sweep', tolerance and "
+        "refine are for simmpp sweep\n"
+    )
+    assert simmpp("run", "c.yaml", "--set", "tolerance=2%").stderr == done.stderr
+
+
+def test_one_of_something_is_no_plural() -> None:
+    Path("one.yaml").write_text(CONFIG.replace("memory: {fraction: 0.3}\n", ""))
+    few = ("--set", "processors=1", "--set", "memory.bytes=64 MB", "--set", "policy=ray")
+    lines = simmpp("run", "one.yaml", *few).stdout.splitlines()
+    assert lines[1].startswith("t3e: 1 PE (1 x 1 x 1), memory 64 MB on each (effectively 1)")
+
+
+@pytest.mark.parametrize("arguments", [("scene", "tetra:5", "--objects"), ("machine", "t3e")])
+def test_a_pipe_that_nobody_reads_ends_a_command(arguments: tuple[str, ...]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "simmpp", *arguments], stdout=writer, stderr=subprocess.PIPE
+        )
+    finally:
+        os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+def test_a_closed_output_is_no_mistake() -> None:
+    code = "import sys; sys.stdout = None; from simmpp.cli import main; main(['machine', 't3e'])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "line"),
+    [
+        (ModelError("3 rays left"), 70, "simmpp: this is a bug, please report it: 3 rays left"),
+        (OSError(28, "No space left", "o"), 2, "simmpp: error: o: No space left"),
+        (KeyboardInterrupt(), 130, "simmpp: interrupted"),
+        (MemoryError(), 2, "simmpp: error: out of memory: expected a smaller scene or resolution"),
+    ],
+)
+def test_other_ends(
+    monkeypatch: pytest.MonkeyPatch, raised: BaseException, code: int, line: str
+) -> None:
+    def simulate(*_: object, **__: object) -> None:
+        raise raised
+
+    monkeypatch.setattr("simmpp.run.point.simulate", simulate)
+    done = simmpp("run", "c.yaml")
+    assert done.exit_code == code
+    assert done.stderr.splitlines() == [line]
+
+
+def test_an_interrupted_run_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    from simmpp.engine.simulate import simulate
+
+    def interrupted(*arguments: object, **options: object) -> object:
+        if arguments[3].name == "concurrent":  # type: ignore[attr-defined]
+            raise KeyboardInterrupt
+        return simulate(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("simmpp.run.point.simulate", interrupted)
+    assert simmpp("run", "c.yaml", "--out", "o").exit_code == 130
+    lines = Path("o/results.csv").read_text().splitlines()
+    assert [line.split(",")[4] for line in lines] == ["policy", "object", "ray"]
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from simmpp.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "print([m for m in ('numpy', 'numba', 'pydantic', 'pint', 'embreex') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_version() -> None:
+    assert simmpp("--version").stdout.startswith("simmpp, version ")
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--timeline", "t.txt"], "--timeline: value 't.txt': expected a file .json, .json.gz or"),
+        (["--timeline-window", "0 ms:5 ms"], "--timeline-window: expected --timeline FILE beside"),
+        (["--timeline", "t.json", "--timeline-window", "5 ms"], "value '5 ms': expected START:END"),
+        (["--timeline", "t.json", "--timeline-window", "2 ms:1 ms"], "START before END"),
+        (["--timeline", "t.json", "--timeline-window", "2:3"], "--timeline-window: value '2': exp"),
+        (["--timeline", "no/t.json"], "expected a file in an existing folder"),
+    ],
+)
+def test_a_timeline_that_cannot_be(options: list[str], problem: str) -> None:
+    assert problem in refused("run", "c.yaml", *options)
+
+
+def test_run_writes_a_timeline_of_every_policy() -> None:
+    assert simmpp("run", "c.yaml", "--timeline", "t.json").exit_code == 0
+    events = json.loads(Path("t.json").read_text())["traceEvents"]
+    processes = [e["args"]["name"] for e in events if e.get("name") == "process_name"]
+    assert processes == ["object", "ray", "concurrent", "replicated"]
+    window = ("--timeline", "w.json.gz", "--timeline-window", "0 ms:10 us")
+    assert simmpp("run", "c.yaml", *window).exit_code == 0
+    cut = json.loads(gzip.decompress(Path("w.json.gz").read_bytes()))["traceEvents"]
+    assert max(event.get("ts", 0) for event in cut) <= 10
+    assert max(event.get("ts", 0) for event in events) > 10
+
+
+def test_a_window_may_lie_where_only_a_long_run_comes() -> None:
+    assert window_of("11 s:2000 s", "--timeline-window") == (11 * 10**12, 2000 * 10**12)
+    with pytest.raises(ConfigError, match=r"value '1e30 s': expected a time .*, at most"):
+        window_of("0 ms:1e30 s", "--timeline-window")
+
+
+def test_run_draws_figures_of_every_policy() -> None:
+    command = ("run", "c.yaml", "--set", "policy={name: object, label: 'by o/t'}", "--figures", "f")
+    assert simmpp(*command, "--timeline", "t.parquet").exit_code == 0
+    names = ("activity", "memory", "pixels", "progress", "torus", "traffic")
+    for policy in ("by-o-t", "replicated"):
+        for name in names:
+            assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
+            assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
+    assert len(list(Path("f").iterdir())) == 2 * 2 * len(names)
+    assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")
