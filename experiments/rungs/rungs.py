@@ -1,6 +1,6 @@
 """Cheaper rungs than full simulation: their error against their cost.
 
-    python experiments/accuracy/rungs.py
+    python experiments/rungs/rungs.py
 
 Over figure 4's grid (and held-out scenes), profits of concurrent and ray dataflow over object
 dataflow. The reference is the geometric mean of 27 seeds (12 for held-out scenes); its own variance

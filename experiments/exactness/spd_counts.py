@@ -1,6 +1,6 @@
 """Rays of the SPD's default scenes beside the two published tables: writes spd_counts.csv.
 
-    python experiments/accuracy/spd_counts.py
+    python experiments/exactness/spd_counts.py
 
 Besides the tracer as it is, variants that show what a difference hangs on: hits nearer to where a
 ray starts than a share of the scene's diagonal are left out (other tracers' epsilon), or rays are

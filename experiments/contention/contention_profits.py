@@ -1,8 +1,8 @@
 """Does waiting for links make profits fall where each PE owns less than a tenth of the scene?
 
-    simmpp sweep experiments/accuracy/contention_profits.yaml --out DIR
-    simmpp sweep experiments/accuracy/contention_slower.yaml --out SLOWER
-    python experiments/accuracy/contention_profits.py DIR SLOWER
+    simmpp sweep experiments/contention/contention_profits.yaml --out DIR
+    simmpp sweep experiments/contention/contention_slower.yaml --out SLOWER
+    python experiments/contention/contention_profits.py DIR SLOWER
 
 Nebel 1998, section 4.2.2, sees the time profit of concurrent dataflow decrease there and supposes
 that "some messages cause wait states". Writes contention_profits.csv, a row per scene, bandwidth of

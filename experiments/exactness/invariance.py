@@ -4,7 +4,7 @@ Powers of two and offsets that every coordinate bears change nothing (tests/stre
 all others do, since they round the coordinates. Rays are compared along their trees: a ray is the
 same ray as long as all its ancestors have spawned the same kinds of rays.
 
-    python experiments/accuracy/invariance.py      # invariance.csv beside it, 2 minutes
+    python experiments/exactness/invariance.py      # invariance.csv beside it, 2 minutes
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Hits and distances against Mitsuba 3, many rays: writes against_mitsuba.csv beside this file.
 
-    python experiments/accuracy/against_mitsuba.py [RAYS of each depth, default 20000]
+    python experiments/exactness/against_mitsuba.py [RAYS of each depth, default 20000]
 
 The comparison is that of tests/verify/test_mitsuba.py (install
 '.[test]'), on pictures of 256 x 256.

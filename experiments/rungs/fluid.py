@@ -1,6 +1,6 @@
 """A model without time, as a control variate: does it know which residents make a run slow?
 
-    python experiments/accuracy/fluid.py
+    python experiments/rungs/fluid.py
 
 How often the rays of each PE's pixels test each object is counted once per scene. Residents then
 say which of these tests go elsewhere, and the PE with the most work gives the makespan; nothing

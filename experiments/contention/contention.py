@@ -1,6 +1,6 @@
 """Is it enough that a message books all links of its way when it departs?
 
-    PYTHONPATH=tests python experiments/accuracy/contention.py
+    PYTHONPATH=tests python experiments/contention/contention.py
 
 That would take one event a message; the engines take one for each link, so that each link serves
 whoever comes first. Real runs with contention (512 x 512, depth 5, 64 PEs, x = 0.1, seed 0) are
