@@ -42,7 +42,7 @@ def profits_of(results: pd.DataFrame) -> pd.DataFrame:
     for policy in ("object", "concurrent"):
         rows[f"{policy}_ms"] = by_policy["makespan_ps"][policy] / 10**9
     tenth = rows["time_profit"].xs(TENTH, level="fraction")
-    places = rows.index.droplevel("fraction")
+    places = rows.reset_index("fraction").index
     return rows.assign(of_tenth=rows["time_profit"] / tenth.reindex(places).to_numpy())
 
 
@@ -63,7 +63,7 @@ def panels(table: pd.DataFrame) -> list[Panel]:
     found = []
     for bandwidth, title in DRAWN.items():
         here = table[table["machine.link_bandwidth"] == bandwidth]
-        curves = []
+        curves: list[Curve] = []
         for scene, name in NAMES.items():
             for contention in CONTENTIONS:
                 rows = here[(here["scene"] == scene) & (here["machine.contention"] == contention)]

@@ -2,22 +2,21 @@
 
     python experiments/exactness/against_mitsuba.py [RAYS of each depth, default 20000]
 
-The comparison is that of tests/verify/test_mitsuba.py (install
-'.[test]'), on pictures of 256 x 256.
+The comparison is that of tests/verify/test_mitsuba.py (install '.[test]'), on pictures of 256 x
+256.
 """
 
 from __future__ import annotations
 
-import csv
 import sys
 from dataclasses import asdict
 from pathlib import Path
 
-HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE.parents[1] / "tests"), str(HERE.parents[1] / "tests" / "verify")]
+from simmpp.common.files import write_csv
 
-from oracles.mitsuba_hits import compare  # noqa: E402
-from test_mitsuba import MESHES, SPD, reflective  # noqa: E402
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+
+from oracles.mitsuba_hits import MESHES, SPD, compare, reflective
 
 RESOLUTION = 256
 
@@ -27,14 +26,10 @@ def main() -> None:
     n_rays = int(sys.argv[1]) if len(sys.argv) > 1 else 20_000
     rows = []
     for spec in (*SPD, *MESHES):
-        got = asdict(compare(reflective(spec), RESOLUTION, n_rays))
-        got["largest_difference"] = f"{got['largest_difference']:.1e}"
-        rows.append({"scene": spec, **got})
+        row = {"scene": spec, **asdict(compare(reflective(spec), RESOLUTION, n_rays))}
+        rows.append(row | {"largest_difference": f"{row['largest_difference']:.1e}"})
         print(rows[-1], flush=True)
-    with (HERE / "against_mitsuba.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+    write_csv(rows, list(rows[0]), Path(__file__).with_suffix(".csv"))
 
 
 if __name__ == "__main__":
