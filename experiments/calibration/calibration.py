@@ -21,13 +21,13 @@ from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, overrides_of
 from table import draw
 
 from simmpp.common.files import write_csv
-from simmpp.common.yamlfile import parse_yaml
-from simmpp.config.config import Config, config_from_mapping
+from simmpp.config.config import Config
 from simmpp.run.provenance import result_versions
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
-from simmpp.studies.nebel98.reproduce import configuration
+from simmpp.studies.nebel98.reproduce import load_experiment
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
+from simmpp.sweeps.adaptive import Frontier
 from simmpp.sweeps.executors import crew_for
 from simmpp.sweeps.journal import Journal, Outcome
 from simmpp.sweeps.plan import Plan, plan
@@ -54,9 +54,7 @@ def plans_of(choice: Choice) -> dict[str, Plan]:
 
 
 def _config(figure: str, choice: Choice, size: list[str]) -> Config:
-    data = parse_yaml(configuration(figure)).data
-    plain = config_from_mapping(data)
-    return config_from_mapping(data, [*size, *overrides_of(choice, plain)])
+    return load_experiment(figure, [*size, *overrides_of(choice, load_experiment(figure))])
 
 
 def run(plans: Iterable[Plan], journal: Journal) -> None:
@@ -64,7 +62,7 @@ def run(plans: Iterable[Plan], journal: Journal) -> None:
     every = list(plans)
     together = Plan(every[0].config, tuple(chain(*(each.points for each in every))), ())
     with closing(crew_for(1, None)) as crew:
-        run_pending(together, journal, crew, None, Watcher())
+        run_pending(Frontier(together, journal), journal, crew, None, Watcher())
 
 
 def verdicts(plans: dict[str, Plan], outcomes: dict[str, Outcome]) -> list[Verdict]:

@@ -21,16 +21,12 @@ from matplotlib.figure import Figure
 
 from simmpp.common.files import write_csv
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
+from simmpp.studies.nebel98.figures import NAMES
 from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, Measured, mean
 from simmpp.sweeps.sweep import RESULTS, run_sweep
 
 HERE = Path(__file__).parent
-SCENES = {
-    "mountain:5": "Mountain5",
-    "rings:1": "Ring1",
-    "tetra:5": "Tetrahedron5",
-    "tetra:6": "Tetrahedron6",
-}
+SCENES = ("mountain:5", "rings:1", "tetra:5", "tetra:6")
 PROCESSORS = 64
 INFORMATION = {
     "concurrent": "with messages (the paper)",
@@ -88,7 +84,7 @@ def draw_scene(axes: Axes, measured: Measured, scene: str) -> None:
         axes.plot(across, [*map(fmean, seeds)], label=name, linewidth=1.3, markersize=4, **style)
     axes.axhline(1, color="black", linewidth=0.7)
     axes.set_ylim(bottom=0)
-    axes.set_title(SCENES[scene], fontsize=9)
+    axes.set_title(NAMES[scene], fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
 
 
@@ -97,7 +93,10 @@ def main() -> None:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/loadinfo")
     result = run_sweep(HERE / "loadinfo.yaml", out=folder)
     copyfile(folder / RESULTS, HERE / "loadinfo.csv")
-    measured = Measured(result.rows.fillna({"error": ""}).to_dict("records"))
+    measured = Measured(
+        {str(column): cell for column, cell in row.items()}
+        for row in result.rows.fillna({"error": ""}).to_dict("records")
+    )
     rows = list(summary(measured))
     write_csv(rows, list(rows[0]), HERE / "summary.csv")
     for row in rows:

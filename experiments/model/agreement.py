@@ -13,10 +13,6 @@ from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
-import matplotlib
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
-
 from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
 from simmpp.machine.machine import Machine
@@ -28,6 +24,8 @@ from simmpp.model.synchronous import DATAFLOWS, synchronous
 from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.plot.curves import Curve, Panel, Scale, Spread, Stated
+from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import Workload
 
@@ -104,38 +102,36 @@ def write(rows: list[Row], name: str) -> None:
     write_csv(rows, list(rows[0]), HERE / name)
 
 
-STYLES = {
-    "to-all": ("o", "#d55e00", "as the paper"),
-    "after-runs": ("^", "#0072b2", "no empty messages, after runs"),
-}
+LABELS = {"to-all": "as the paper", "after-runs": "no empty messages, after runs"}
+"""Of messages of rays."""
+LOW, HIGH = 0.05, 200.0
+RATIO = Scale("T(ray) / T(object), asynchronous simulation", is_log=True, ticks=(0.1, 1, 10, 100))
 
 
-def draw(rows: list[Row]) -> None:
-    """The simulation's ratio over the model's; in the shaded quadrants they disagree."""
-    figure = Figure(figsize=(10, 4.1), layout="constrained")
-    for axes, costs in zip(figure.subplots(1, len(MACHINES), sharey=True), MACHINES, strict=True):
-        low, high = 0.05, 200.0
-        axes.fill_between([low, 1], 1, high, color="0.9")
-        axes.fill_between([1, high], low, 1, color="0.9")
-        axes.plot([low, high], [low, high], color="0.5", linewidth=0.8)
-        for model, (marker, colour, label) in STYLES.items():
-            chosen = [row for row in rows if row["costs"] == costs]
-            across, up = [row[model] for row in chosen], [row["asynchronous"] for row in chosen]
-            axes.scatter(
-                across, up, 14, marker=marker, facecolors="none", edgecolors=colour, label=label
-            )
-        axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), aspect="equal")
-        axes.tick_params(labelsize=8)
-        axes.set_title(costs.replace(" to unpack", "\nto unpack"), fontsize=8)
-        axes.set_xlabel("T(ray) / T(object), model", fontsize=8)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(LogLocator())
-            axis.set_minor_formatter(NullFormatter())
-    figure.axes[0].set_ylabel("T(ray) / T(object), asynchronous simulation", fontsize=8)
-    figure.axes[0].legend(fontsize=7, loc="upper left", title="messages of rays", title_fontsize=7)
-    with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
-        figure.savefig(HERE / "agreement.png", dpi=200)
-        figure.savefig(HERE / "agreement.svg", metadata={"Date": None})
+def panel(rows: list[Row], costs: str) -> Panel:
+    """The simulation's ratio over the model's, a line for each number of PEs."""
+    curves = [
+        Curve(label, points(rows, costs, model, nb))
+        for model, label in LABELS.items()
+        for nb in PROCESSORS
+    ]
+    agreement = Curve("equal", {x: Spread(x, x, x) for x in (LOW, HIGH)}, is_guide=True)
+    winners = [
+        Stated(LOW, 1, 1, HIGH, "another winner"),
+        Stated(1, HIGH, LOW, 1, ""),
+    ]
+    model = Scale("T(ray) / T(object), model", is_log=True, ticks=RATIO.ticks)
+    note = "each line: a number of PEs, over x"
+    return Panel(costs, model, RATIO, [*curves, agreement], winners, note=note, legend="messages")
+
+
+def points(rows: list[Row], costs: str, model: str, nb: int) -> dict[float, Spread]:
+    """The simulation's ratio by the model's."""
+    return {
+        float(row[model]): Spread(*[float(row["asynchronous"])] * 3)
+        for row in rows
+        if (row["costs"], row["processors"]) == (costs, nb)
+    }
 
 
 def main() -> None:
@@ -153,7 +149,7 @@ def main() -> None:
     write(summary, "agreement-widths.csv")
     for row in summary:
         print(row)
-    draw(rows)
+    draw([panel(rows, costs) for costs in MACHINES], HERE / "agreement")
 
 
 if __name__ == "__main__":

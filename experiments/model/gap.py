@@ -11,10 +11,6 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
-import matplotlib
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
-
 from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
@@ -24,8 +20,11 @@ from simmpp.model.measured import measured
 from simmpp.model.synchronous import DATAFLOWS, Dataflow, synchronous
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
+from simmpp.plot.curves import Curve, Panel, Scale, Spread
+from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
+from simmpp.studies.nebel98.figures import NAMES
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
 from simmpp.workload.workload import Workload
@@ -41,13 +40,15 @@ POLICIES: dict[Dataflow, PolicyParameters] = {
 }
 """The model's object dataflow has a request for each ray; the simulation's default merges them."""
 MODELS = {
-    "analytical": ("o", "#d55e00", "r from x and nb: equation (1)"),
-    "after_runs": ("s", "#e69f00", "the same without empty messages"),
-    "measured": ("D", "#0072b2", "r measured"),
-    "measured_waits": ("^", "#56b4e9", "r measured, PEs wait for messages"),
-    "simulated_merged": ("x", "#000000", "simulation, requests merged"),
+    "analytical": "r from x and nb: equation (1)",
+    "after_runs": "the same without empty messages",
+    "measured": "r measured",
+    "measured_waits": "r measured, PEs wait for messages",
+    "simulated_merged": "simulation, requests merged",
 }
-"""Columns of times relative to the simulation, and how they are drawn."""
+"""Columns of times relative to the simulation, and what they are called."""
+BESIDE = 0.14
+"""Models of one point stand side by side."""
 
 Row = dict[str, str | float]
 
@@ -82,27 +83,22 @@ def row_of(scene: str, x: Fraction, dataflow: Dataflow, times: dict[str, int | f
     return row | {name: times[name] / times["simulated"] for name in MODELS}
 
 
-def draw(rows: list[Row]) -> None:
-    """Model over simulation for each scene; 1 is agreement."""
-    figure = Figure(figsize=(9, 4.2), layout="constrained")
-    for axes, dataflow in zip(figure.subplots(1, 2, sharey=True), DATAFLOWS, strict=True):
-        chosen = [row for row in rows if row["dataflow"] == dataflow]
-        for number, (model, (marker, colour, label)) in enumerate(MODELS.items()):
-            places = [n + 0.14 * (number - 2) for n in range(len(chosen))]
-            heights = [row[model] for row in chosen]
-            axes.scatter(places, heights, 16, marker=marker, color=colour, label=label)
-        axes.axhline(1.0, color="black", linewidth=0.8)
-        axes.set_yscale("log")
-        axes.set_yticks([0.03, 0.1, 0.3, 1, 2], ["0.03", "0.1", "0.3", "1", "2"], fontsize=8)
-        axes.yaxis.set_minor_locator(NullLocator())
-        axes.set_title(f"{dataflow} dataflow, 64 PEs", fontsize=9)
-        labels = [f"{row['scene']}, x = {row['fraction']}" for row in chosen]
-        axes.set_xticks(range(len(chosen)), labels, rotation=90, fontsize=7)
-    figure.axes[0].set_ylabel("model / asynchronous simulation", fontsize=8)
-    figure.axes[1].legend(fontsize=7, loc="lower right")
-    with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
-        figure.savefig(HERE / "gap.png", dpi=200)
-        figure.savefig(HERE / "gap.svg", metadata={"Date": None})
+def panel(rows: list[Row], dataflow: Dataflow) -> Panel:
+    """Model over simulation for each scene and x; 1 is agreement."""
+    chosen = [row for row in rows if row["dataflow"] == dataflow]
+    curves = []
+    for number, (model, label) in enumerate(MODELS.items()):
+        places = [n + BESIDE * (number - len(MODELS) // 2) for n in range(len(chosen))]
+        heights = [float(row[model]) for row in chosen]
+        spreads = {x: Spread(y, y, y) for x, y in zip(places, heights, strict=True)}
+        curves.append(Curve(label, spreads))
+    names = {float(n): f"{float(row['fraction']):.0%}" for n, row in enumerate(chosen)}
+    middle = (len(FRACTIONS) - 1) / 2
+    for n, scene in enumerate(SCENES):
+        names[n * len(FRACTIONS) + middle] = f"\n{NAMES[scene]}"
+    x = Scale("objects resident on each PE", ticks=tuple(names), names=tuple(names.values()))
+    ratio = Scale("model / asynchronous simulation", is_log=True, limits=(0.025, 2.2))
+    return Panel(f"{dataflow} dataflow, {PROCESSORS} PEs", x, ratio, curves, level=1)
 
 
 def main() -> None:
@@ -117,7 +113,7 @@ def main() -> None:
                 rows.append(row_of(scene, x, dataflow, times))
                 print(rows[-1], flush=True)
     write_csv(rows, list(rows[0]), HERE / "gap.csv")
-    draw(rows)
+    draw([panel(rows, dataflow) for dataflow in DATAFLOWS], HERE / "gap")
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from SALib.analyze import sobol
 from scipy.stats import spearmanr
 
 from simmpp.plot.matplotlib_panels import SETTINGS
+from simmpp.studies.nebel98.figures import NAMES
 
 OUTPUTS = {
     "time_profit": ("time profit", "object_ps", "concurrent_ps"),
@@ -95,7 +96,7 @@ def agreement(reduced: Sequence[Row], full: Sequence[Row]) -> list[str]:
     return lines
 
 
-def draw(rows: Sequence[Row], scenes: Mapping[str, str], note: str) -> Figure:
+def draw(rows: Sequence[Row], scenes: Sequence[str], note: str) -> Figure:
     """A panel per scene and output; factors in the order of their largest total index."""
     largest = {
         factor.name: max(float(row["ST"]) for row in rows if row["factor"] == factor.name)
@@ -105,7 +106,7 @@ def draw(rows: Sequence[Row], scenes: Mapping[str, str], note: str) -> Figure:
     with matplotlib.rc_context(SETTINGS):
         figure = Figure(figsize=(10, 8.6), layout="constrained")
         grid = figure.subplots(len(scenes), len(OUTPUTS), sharex=True, sharey=True)
-        for line, (scene, name) in zip(grid, scenes.items(), strict=True):
+        for line, scene in zip(grid, scenes, strict=True):
             for axes, output in zip(line, OUTPUTS, strict=True):
                 own = {
                     row["factor"]: row
@@ -114,10 +115,8 @@ def draw(rows: Sequence[Row], scenes: Mapping[str, str], note: str) -> Figure:
                 }
                 _bars(axes, [own[factor.name] for factor in order])
                 spread = np.exp(float(own["x"]["sd_log"]))
-                title = (
-                    f"{name}: {OUTPUTS[output][0]}\n(one standard deviation: a factor {spread:.2f})"
-                )
-                axes.set_title(title, fontsize=9)
+                note = f"(one standard deviation: a factor {spread:.2f})"
+                axes.set_title(f"{NAMES[scene]}: {OUTPUTS[output][0]}\n{note}", fontsize=9)
         for axes in grid[:, 0]:
             axes.set_yticks(range(len(order)), [factor.label for factor in order])
         for axes in grid[-1]:

@@ -19,6 +19,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
@@ -32,11 +33,12 @@ from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.plot.matplotlib_panels import SETTINGS, save
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
+from simmpp.studies.nebel98.figures import NAMES
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
 
 HERE = Path(__file__).parent
-SCENES = {"mountain:5": "Mountain5", "tetra:5": "Tetrahedron5"}
+SCENES = ("mountain:5", "tetra:5")
 FRACTIONS = (Fraction(1, 10), Fraction(1, 2))
 PROCESSORS, RESOLUTION, SEED = 64, 256, 0
 T3E = machine("t3e", {}, PROCESSORS)
@@ -108,7 +110,7 @@ def draw(rows: list[Row]) -> None:
         for axes, (scene, x) in zip(grid.flat, panels, strict=True):
             at = (scene, str(x))
             chosen = [row for row in rows if (row["scene"], row["fraction"]) == at]
-            draw_panel(axes, chosen, f"{SCENES[scene]}, x = {x:.0%}")
+            draw_panel(axes, chosen, f"{NAMES[scene]}, x = {x:.0%}")
         for axes in grid[1]:
             axes.set_xlabel("bytes(object) / bytes(ray)")
         for axes in grid[:, 0]:
@@ -151,7 +153,7 @@ def area(row: Row) -> int:
 def legend(figure: Figure) -> None:
     """Markers of policies and of margins."""
     axes = figure.axes[0]
-    entries = [
+    entries: list[Artist] = [
         axes.scatter([], [], 75, marker=marker, color=colour, label=f"{label} is fastest")
         for label, marker, colour in POLICIES.values()
     ]

@@ -42,7 +42,7 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent
-SCENES = {"mountain:5": "Mountain5", "tetra:5": "Tetrahedron5"}
+SCENES = ("mountain:5", "tetra:5")
 RESOLUTION, FULL_RESOLUTION = 192, 512
 BASE_SAMPLES = 256
 """Draws are BASE_SAMPLES * (factors + 2); any smaller power of two is a prefix of them."""

@@ -1,7 +1,7 @@
 """The table of configuration keys, as Markdown, made from the settings themselves.
 
-``python -m simmpp.config.keys`` prints it; ``python -m simmpp.config.keys README.md`` puts it
-between the markers of a file.
+``python -m simmpp.config.keys`` prints it; ``python -m simmpp.config.keys configs/README.md`` puts
+it between the markers of a file.
 """
 
 from __future__ import annotations

@@ -10,11 +10,13 @@ Nothing else excuses a disagreement.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from importlib.resources import files
 
 import numpy as np
 
 from oracles.mitsuba_scene import MitsubaScene
+from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.generations import Rays
@@ -24,11 +26,23 @@ from simmpp.workload.trace.replay import generations, traced
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import POLYGON, SHADOW
 
+SPD = ("balls:2", "gears:1", "mountain:4", "rings:1", "tetra:4", "lattice:2", "jacks:2")
+MESHES = ("StanfordBunny.ply:2000", "planar_mesh.ply:500")
 START = 1e-4
 """Rays are asked from that far along: float32 can't tell the surface they leave from the next."""
 TOLERANCE = 1e-5
 """Of distances: 100 roundings of float32, as a grazing hit multiplies them."""
 DISPLACED = 4e-6
+
+
+def reflective(spec: str) -> Scene:
+    """The scene with some material that reflects."""
+    if ".ply" in spec:
+        spec = str(files("pymeshfix") / "examples" / spec)
+    scene = load_scene(spec)
+    if any(material.reflects for material in scene.materials):
+        return scene
+    return replace(scene, materials=tuple(replace(m, ks=0.5) for m in scene.materials))
 
 
 @dataclass(frozen=True)

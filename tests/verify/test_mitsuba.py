@@ -10,33 +10,16 @@ those of the package pymeshfix, holes and all.
 from __future__ import annotations
 
 import os
-from dataclasses import replace
-from importlib.resources import files
 
 import pytest
-from oracles.mitsuba_hits import Comparison, compare
-
-import simmpp
-from simmpp.scene.scene import Scene
+from oracles.mitsuba_hits import MESHES, SPD, Comparison, compare, reflective
 
 pytest.importorskip("mitsuba", reason="there are wheels for x86-64 only")
 
 RAYS = int(os.environ.get("SIMMPP_MITSUBA_RAYS", "1000"))
 RESOLUTION = 64
-SPD = ("balls:2", "gears:1", "mountain:4", "rings:1", "tetra:4", "lattice:2", "jacks:2")
-MESHES = ("StanfordBunny.ply:2000", "planar_mesh.ply:500")
 EDGE_RAYS = 1e-4
 """Share of rays that may pass so near an edge that float32 decides otherwise; at least one may."""
-
-
-def reflective(spec: str) -> Scene:
-    """The scene with some material that reflects."""
-    if ".ply" in spec:
-        spec = str(files("pymeshfix") / "examples" / spec)
-    scene = simmpp.load_scene(spec)
-    if any(material.reflects for material in scene.materials):
-        return scene
-    return replace(scene, materials=tuple(replace(m, ks=0.5) for m in scene.materials))
 
 
 @pytest.mark.parametrize("spec", [*SPD, *MESHES])

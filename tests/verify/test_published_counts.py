@@ -1,6 +1,6 @@
 """Rays of the SPD's default scenes lie in the range of the two published tables, or within 1 %.
 
-Where they do not, the cause is named below; ``experiments/accuracy/spd_counts.py`` measures it.
+Where they do not, the cause is named below; ``experiments/exactness/spd_counts.py`` measures it.
 The tables differ most in shadow rays at glass: Haines casts them on the inside too, where the glass
 blocks them all (so traced, the mountain has 414,445 shadow rays and the gears 2,253,534), Havran,
 as the tracer here, on the outside only.

@@ -4,7 +4,7 @@ The profits of a point scatter by 2 to 6 % from seed to seed, for residents are 
 repeats every point. But neighbours along x have nearly the same mean: simulate each fraction once,
 with residents that make up for each other (``rotated``), and smooth the logarithms of the profits.
 Every simulation is a full one, so there is no error but that of the draws and of the smoothing.
-What it saves, how it errs and what else was tried: experiments/README.md, "Cheaper rungs".
+What it saves, how it errs and what else was tried: experiments/rungs/README.md.
 """
 
 from __future__ import annotations

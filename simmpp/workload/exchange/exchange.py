@@ -1,50 +1,7 @@
 """Workloads from other renderers, and for other tools: rays x objects in Parquet or npz.
 
-A workload is two tables. In Parquet they are two files, ``forest.parquet`` (rays) and
-``forest.objects.parquet`` (objects); the first is the one to name. In npz they are arrays of one
-file, ``ray_parent``, ``object_bytes`` and so on. Rows count from 0 and may be in any order.
-
-Rays, one row each:
-
-========== ====================== ============================================ ==================
-column     type                   meaning                                      default
-========== ====================== ============================================ ==================
-itinerary  list of integers       rows of the objects that the ray is tested   (required)
-                                  against, front to back, each once; in npz
-                                  ``itinerary_offsets`` (rays + 1 integers
-                                  from 0) and ``itinerary_objects``
-parent     integer                row of the ray that spawned it; -1 or null   -1
-                                  for a primary ray
-kind       text, or integer 0-3   primary, reflected, refracted or shadow      primary without a
-                                                                               parent, else
-                                                                               reflected
-pixel      integer                place of a primary ray in the picture, row   order of the rows
-                                  by row (pixels are dealt to PEs in this
-                                  order; several rays may share one); of
-                                  others -1 or their primary ray's
-hit        integer                row of the object hit, one of the            last of the
-                                  itinerary; -1 or null for none               itinerary of rays
-                                                                               with children,
-                                                                               else -1
-distance   number, scene units    distance of that hit; not read without       0
-========== ====================== ============================================ ==================
-
-Objects, one row each:
-
-========== ====================== ============================================ ==================
-bytes      integer, bytes         size on the wire and in memory, 0 to 2^40    (required)
-kind       text, or integer 0-3   sphere, cone, polygon or mesh: chooses the   mesh
-                                  machine's cost of a test
-triangles  integer                triangles, for the same                      0 (as 1)
-test_ps    integer, picoseconds   cost of one test, 0 to 10 s, in place of     the machine's
-                                  the machine's
-x, y, z    number, scene units    centre of the object; owners are placed by   0
-                                  it (equal centres: by row)
-========== ====================== ============================================ ==================
-
-``picture``, two integers (an array of npz; in Parquet the value ``512 512`` of the key ``picture``
-of the schema's metadata), gives rows and columns of primary rays; default 1 and their number. Only
-the placement of pixels in tiles reads it.
+A workload is two tables, of rays and of objects. README.md beside this file has their columns, with
+type, meaning and default.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""The table of keys is made from the code; the README's is the present one."""
+"""The table of keys is made from the code; that of configs/README.md is the present one."""
 
 from pathlib import Path
 
 from simmpp.config.keys import key_table, with_table
 
-README = Path(__file__).parents[3] / "README.md"
+README = Path(__file__).parents[3] / "configs" / "README.md"
 
 
 def test_every_key_says_what_it_takes_and_means() -> None:
@@ -17,4 +17,4 @@ def test_every_key_says_what_it_takes_and_means() -> None:
 
 def test_the_readme_has_the_present_table() -> None:
     text = README.read_text(encoding="utf-8")
-    assert with_table(text) == text, "run: python -m simmpp.config.keys README.md"
+    assert with_table(text) == text, "run: python -m simmpp.config.keys configs/README.md"

@@ -1,6 +1,6 @@
 """A model without time, as a control variate: does it know which residents make a run slow?
 
-    python experiments/accuracy/fluid.py
+    python experiments/rungs/fluid.py
 
 How often the rays of each PE's pixels test each object is counted once per scene. Residents then
 say which of these tests go elsewhere, and the PE with the most work gives the makespan; nothing
@@ -36,7 +36,7 @@ FETCHES_EXPONENT = 0.62
 """A PE that needs an object for n tests fetches it n^0.62 times, as many of the requests merge.
 ESTIMATE, range 0.57-0.67: what gives the fetches of the paper's four scenes, 64 PEs, x = 1/64."""
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Bools = NDArray[np.bool_]
 
 FLUIDS = ("object", "object, waiting", "ray")
@@ -72,7 +72,7 @@ class Demand:
         asking, answering = self.pes[missing], self.owners[missing]
 
         def of(pes: NDArray[np.int64], costs_ps: Floats) -> Floats:
-            return np.bincount(pes, costs_ps[missing], len(self.home_ps))
+            return np.asarray(np.bincount(pes, costs_ps[missing], len(self.home_ps)), np.float64)
 
         computed = np.bincount(self.pes, self.compute_ps, len(self.home_ps)) + self.home_ps
         busy = computed + of(asking, self.fetching_ps) + of(answering, self.serving_ps)

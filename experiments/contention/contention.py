@@ -1,6 +1,6 @@
 """Is it enough that a message books all links of its way when it departs?
 
-    PYTHONPATH=tests python experiments/accuracy/contention.py
+    python experiments/contention/contention.py
 
 That would take one event a message; the engines take one for each link, so that each link serves
 whoever comes first. Real runs with contention (512 x 512, depth 5, 64 PEs, x = 0.1, seed 0) are
@@ -14,15 +14,14 @@ runs in ms, costs in us of CPU for each message.
 from __future__ import annotations
 
 import csv
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from oracles.hop_by_hop import HopByHop, Sent
 from simpy.events import Event
-from traffic import arrivals_ps
 
 from simmpp.common.compiled import njit
 from simmpp.engine.initial import new_state
@@ -45,6 +44,11 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.scene.load import load_scene
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+
+from oracles.hop_by_hop import HopByHop, Sent
+from traffic import arrivals_ps
 
 HERE = Path(__file__).parent
 SCENES = ("mountain:5", "tetra:5")

@@ -4,7 +4,7 @@ Powers of two and offsets that every coordinate bears change nothing (tests/stre
 all others do, since they round the coordinates. Rays are compared along their trees: a ray is the
 same ray as long as all its ancestors have spawned the same kinds of rays.
 
-    python experiments/accuracy/invariance.py      # invariance.csv beside it, 2 minutes
+    python experiments/exactness/invariance.py      # invariance.csv beside it, 2 minutes
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ import simmpp
 from simmpp.scene.scene import Scene
 from simmpp.workload.workload import SHADOW, Workload
 
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+
+from transforms import moved, scaled, turned
+
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parents[1] / "tests"))
-
-from transforms import moved, scaled, turned  # noqa: E402
-
 SCENES = ("mountain:4", "rings:1", "tetra:4", "gears:1", "balls:3")
 PICTURE = simmpp.Picture(resolution=128)
 PROCESSORS, FRACTION = 64, Fraction(1, 10)

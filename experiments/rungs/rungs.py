@@ -1,6 +1,6 @@
 """Cheaper rungs than full simulation: their error against their cost.
 
-    python experiments/accuracy/rungs.py
+    python experiments/rungs/rungs.py
 
 Over figure 4's grid (and held-out scenes), profits of concurrent and ray dataflow over object
 dataflow. The reference is the geometric mean of 27 seeds (12 for held-out scenes); its own variance
@@ -16,23 +16,30 @@ from collections import defaultdict
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
+from string import ascii_uppercase
+from textwrap import fill
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 from rungs_runs import FIGURE4, HELD_OUT, all_runs, processors_of
 
 from simmpp.common.files import write_csv
+from simmpp.plot.curves import Curve, Panel, Scale, Spread
+from simmpp.plot.matplotlib_panels import draw
 from simmpp.studies.curve.estimate import Node, profits_at
 from simmpp.studies.curve.smooth import smooth
+from simmpp.studies.nebel98.figures import NAMES
 
 HERE = Path(__file__).parent
 CLOSE = 0.05
 """Half-width that the errors are compared with."""
+MEASURES = {"time": "time profit", "messages": "message profit"}
 SEEDS = (1, 2, 4, 8)
 CHEAP_RUNS = 8
 """Cheap seeds of the control variate."""
+LETTERS_ACROSS = 84
+"""Characters of a line that says which letter is which rung."""
 
+Row = dict[str, str | float]
 Table = dict[tuple[str, Fraction], dict[int, np.ndarray]]
 """By kind and fraction, by seed: logarithms of time and message profit, CPU seconds."""
 Errors = list[tuple[np.ndarray, np.ndarray]]
@@ -137,7 +144,7 @@ def rungs_of(table: Table, scene: str) -> Iterator[tuple[str, float, Errors]]:
         yield "pixels extrapolated", cost, [plain(2 * a - b) for a, b in pairs]
 
 
-def judged(table: Table, scene: str, policy: str) -> Iterator[dict[str, object]]:
+def judged(table: Table, scene: str, policy: str) -> Iterator[Row]:
     """Rows of one scene and policy."""
     _, full = seeds_of(table, "full")
     truth, spread = full[:, :, :2].mean(axis=0).T, full[:, :, :2].std(axis=0, ddof=1).T
@@ -165,11 +172,10 @@ def row_of(
     rms: np.ndarray,
     within: np.ndarray,
     covered: float | None,
-) -> dict[str, object]:
+) -> Row:
     """Errors in percent; shares of estimates that are close, over all x and at the worst x."""
-    row: dict[str, object] = {"scene": scene, "policy": policy, "rung": rung}
-    row["cost"] = round(cost, 3)
-    for number, measure in enumerate(("time", "messages")):
+    row: Row = {"scene": scene, "policy": policy, "rung": rung, "cost": round(cost, 3)}
+    for number, measure in enumerate(MEASURES):
         row[f"{measure}_worst"] = round(100 * float(rms[number].max()), 2)
         row[f"{measure}_median"] = round(100 * float(np.median(rms[number])), 2)
         row[f"{measure}_close"] = round(float(within[number].mean()), 3)
@@ -178,57 +184,51 @@ def row_of(
     return row
 
 
-def draw(rows: list[dict[str, object]]) -> None:
-    """The worst point of each scene of figure 4, concurrent dataflow; full runs are the line."""
-    figure = Figure(figsize=(9, 5.6), layout="constrained")
-    colours = dict(zip(FIGURE4, ("#0072b2", "#d55e00", "#009e73", "#000000"), strict=True))
+def panel(rows: list[Row], measure: str) -> Panel:
+    """The worst point of each scene of figure 4, concurrent dataflow; full runs are the lines."""
     chosen = [row for row in rows if row["scene"] in FIGURE4 and row["policy"] == "concurrent"]
-    names = list(dict.fromkeys(row["rung"] for row in chosen if "full x" not in str(row["rung"])))
-    letters = dict(zip(names, (f"${letter}$" for letter in "ABCDEFGHIJKLM"), strict=False))
-    for axes, measure in zip(figure.subplots(1, 2, sharey=True), ("time", "messages"), strict=True):
-        for scene, colour in colours.items():
-            of_scene = [row for row in chosen if row["scene"] == scene]
-            full = [row for row in of_scene if "full x" in str(row["rung"])]
-            xs, ys = ([row[key] for row in full] for key in ("cost", f"{measure}_worst"))
-            axes.plot(xs, ys, color=colour, linewidth=0.8, marker="o", markersize=3)
-            for row in of_scene:
-                if row not in full:
-                    place = (row["cost"], max(float(row[f"{measure}_worst"]), 0.1))
-                    axes.scatter(
-                        *place, 40, color=colour, marker=letters[row["rung"]], linewidth=0.4
-                    )
-        axes.axhline(100 * CLOSE / 1.96, color="black", linewidth=0.8, linestyle="dotted")
-        axes.set(xscale="log", yscale="log", xlabel="CPU time / one full seed of the curve")
-        axes.set_title({"time": "time profit", "messages": "message profit"}[measure], fontsize=9)
-        axes.set_xticks([0.1, 0.2, 0.5, 1, 2, 4, 8], ["0.1", "0.2", "0.5", "1", "2", "4", "8"])
-        axes.set_yticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
-        axes.minorticks_off()
-    figure.axes[0].set_ylabel("root mean square error at the worst x, %")
-    last = figure.axes[1]
-    marks = [
-        last.scatter([], [], 40, color="black", marker=letters[name], linewidth=0.4, label=name)
-        for name in names
-    ]
-    marks += [
-        last.plot(
-            [], [], color=colour, marker="o", markersize=3, label=f"{scene}: full x 1, 2, 4, 8"
-        )[0]
-        for scene, colour in colours.items()
-    ]
-    figure.legend(handles=marks, fontsize=7, loc="outside lower center", ncols=4)
-    with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
-        figure.savefig(HERE / "rungs.png", dpi=200)
-        figure.savefig(HERE / "rungs.svg", metadata={"Date": None})
+    rungs = list(dict.fromkeys(row["rung"] for row in chosen if not is_full(row)))
+    letters = dict(zip(rungs, ascii_uppercase, strict=False))
+    curves = []
+    for style, scene in enumerate(FIGURE4):
+        own = [row for row in chosen if row["scene"] == scene]
+        full = {float(row["cost"]): error_of(row, measure) for row in own if is_full(row)}
+        curves.append(Curve(NAMES[scene], full, style=style))
+        for row in own:
+            if not is_full(row):
+                cost = float(row["cost"])
+                said = {cost: letters[row["rung"]]}
+                curves.append(Curve("_", {cost: error_of(row, measure)}, said=said, style=style))
+    named = "; ".join(f"{letter} {rung}" for rung, letter in letters.items())
+    return Panel(
+        f"{MEASURES[measure]}; the line: 95 % of estimates are within 5 %",
+        Scale("CPU time / one full seed of the curve", is_log=True),
+        Scale("root mean square error at the worst x, %", is_log=True, limits=(0.7, 250)),
+        curves,
+        level=100 * CLOSE / 1.96,
+        note=fill(named, LETTERS_ACROSS),
+        legend="1, 2, 4, 8 full seeds",
+    )
+
+
+def is_full(row: Row) -> bool:
+    """Full seeds, with which rungs are compared."""
+    return "full x" in str(row["rung"])
+
+
+def error_of(row: Row, measure: str) -> Spread:
+    """The error at the worst x; 0.1 % is the least that is drawn."""
+    return Spread(*[max(float(row[f"{measure}_worst"]), 0.1)] * 3)
 
 
 def main() -> None:
     """Simulate what is missing, judge, draw."""
-    runs, rows = all_runs(), []
+    runs, rows = all_runs(), list[Row]()
     for policy in ("concurrent", "ray"):
         for scene in (*FIGURE4, *HELD_OUT):
             rows += judged(table_of(runs, scene, policy), scene, policy)
     write_csv(rows, list(rows[0]), HERE / "rungs.csv")
-    draw(rows)
+    draw([panel(rows, measure) for measure in MEASURES], HERE / "rungs")
 
 
 if __name__ == "__main__":

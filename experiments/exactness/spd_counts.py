@@ -1,6 +1,6 @@
 """Rays of the SPD's default scenes beside the two published tables: writes spd_counts.csv.
 
-    python experiments/accuracy/spd_counts.py
+    python experiments/exactness/spd_counts.py
 
 Besides the tracer as it is, variants that show what a difference hangs on: hits nearer to where a
 ray starts than a share of the scene's diagonal are left out (other tracers' epsilon), or rays are
@@ -15,11 +15,11 @@ from pathlib import Path
 from simmpp.common.files import write_csv
 from simmpp.workload.trace import geometry
 
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+
+from oracles.published_counts import HAINES, HAVRAN, QUANTITIES, traced_counts
+
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parents[1] / "tests"))
-
-from oracles.published_counts import HAINES, HAVRAN, QUANTITIES, traced_counts  # noqa: E402
-
 AS_IT_IS, DEPTH = geometry.T_MIN, 5
 VARIANTS = (
     ("as it is", AS_IT_IS, DEPTH),
@@ -36,7 +36,7 @@ def percent(count: int, published: int | None) -> str:
 
 def rows(name: str, variant: str, counts: tuple[int, ...]) -> list[dict[str, object]]:
     """A row per quantity of one scene."""
-    table = []
+    table: list[dict[str, object]] = []
     for column, quantity in enumerate(QUANTITIES):
         haines = HAINES[name][column] if name in HAINES else None
         havran = HAVRAN[name][column]

@@ -1,6 +1,6 @@
 """Does `tolerance: 2%` hold its word, and what does it save? On grids it was not developed on.
 
-    python experiments/accuracy/coverage.py noisy|quiet|full    # writes coverage-GRID.csv
+    python experiments/stopping/coverage.py noisy|quiet|full    # writes coverage-GRID.csv
 
 Each point is simulated with a pool of seeds. The first 200 give the true profits. The rest is a
 stream of draws: a repetition takes from it what the rule asks for (the functions that sweeps call),

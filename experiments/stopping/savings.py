@@ -1,6 +1,6 @@
 """What `tolerance: 2%` saves on figure 4's grid: seeds of each point against one number for all.
 
-    python experiments/accuracy/savings.py    # savings.csv, from bench.csv
+    python experiments/stopping/savings.py    # savings.csv, from bench.csv
 
 bench.csv has how well each profit is known after so many seeds, and so its deviation. From that
 follows how many seeds make its interval (t of 97.5 %, as in a sweep) 2 % wide on either side. A

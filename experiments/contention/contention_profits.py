@@ -1,8 +1,8 @@
 """Does waiting for links make profits fall where each PE owns less than a tenth of the scene?
 
-    simmpp sweep experiments/accuracy/contention_profits.yaml --out DIR
-    simmpp sweep experiments/accuracy/contention_slower.yaml --out SLOWER
-    python experiments/accuracy/contention_profits.py DIR SLOWER
+    simmpp sweep experiments/contention/contention_profits.yaml --out DIR
+    simmpp sweep experiments/contention/contention_slower.yaml --out SLOWER
+    python experiments/contention/contention_profits.py DIR SLOWER
 
 Nebel 1998, section 4.2.2, sees the time profit of concurrent dataflow decrease there and supposes
 that "some messages cause wait states". Writes contention_profits.csv, a row per scene, bandwidth of
@@ -42,7 +42,7 @@ def profits_of(results: pd.DataFrame) -> pd.DataFrame:
     for policy in ("object", "concurrent"):
         rows[f"{policy}_ms"] = by_policy["makespan_ps"][policy] / 10**9
     tenth = rows["time_profit"].xs(TENTH, level="fraction")
-    places = rows.index.droplevel("fraction")
+    places = rows.reset_index("fraction").index
     return rows.assign(of_tenth=rows["time_profit"] / tenth.reindex(places).to_numpy())
 
 
@@ -63,7 +63,7 @@ def panels(table: pd.DataFrame) -> list[Panel]:
     found = []
     for bandwidth, title in DRAWN.items():
         here = table[table["machine.link_bandwidth"] == bandwidth]
-        curves = []
+        curves: list[Curve] = []
         for scene, name in NAMES.items():
             for contention in CONTENTIONS:
                 rows = here[(here["scene"] == scene) & (here["machine.contention"] == contention)]
