@@ -14,6 +14,7 @@ What the commands do, from Python::
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -68,8 +69,18 @@ __all__ = [
 ]
 
 
+__version__: str
+
+
+def __dir__() -> list[str]:
+    """What there is for others, imported or not."""
+    return sorted([*__all__, "__version__"])
+
+
 def __getattr__(name: str) -> Any:
     """Import on first use: ``simmpp --help`` must not wait for numba."""
+    if name == "__version__":
+        return version("simmpp")
     if name not in _HOME:
         raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
     module, _, attribute = _HOME[name].partition(":")

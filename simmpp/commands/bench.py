@@ -10,6 +10,7 @@ import click
 
 from simmpp.commands.options import (
     NamedPath,
+    Whole,
     available_cores,
     examples,
     folder,
@@ -31,7 +32,7 @@ LARGE = 10
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option(
     "--seeds",
-    type=click.IntRange(4, 10_000),
+    type=Whole(4, 10_000),
     default=32,
     show_default=True,
     metavar="N",

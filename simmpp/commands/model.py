@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import FiniteRange, NamedPath, examples, folder, set_option
+from simmpp.commands.options import NamedPath, Number, examples, folder, set_option
 from simmpp.commands.terminal import notice, output, table
 from simmpp.commands.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
@@ -48,7 +48,7 @@ from simmpp.workload.workload import Workload
 )
 @click.option(
     "--imbalance",
-    type=FiniteRange(0, 1),
+    type=Number("a number from 0 to 1", 0, 1),
     default=0.0,
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",

@@ -19,17 +19,36 @@ LAST_PS = (1 << 63) - 1
 """Later than any run ends."""
 
 
-class FiniteRange(click.FloatRange):
+class Whole(click.IntRange):
+    """An integer between bounds."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """The integer."""
+        try:
+            return int(super().convert(value, param, ctx))
+        except click.BadParameter:
+            expected = f"expected an integer from {self.min} to {self.max}"
+            self.fail(f"value {value!r}: {expected}", param, ctx)
+
+
+class Number(click.FloatRange):
     """A number between bounds; NaN, which is within any, is refused, and so is infinity."""
+
+    def __init__(self, expected: str, low: float, high: float | None = None, **ends: bool) -> None:
+        super().__init__(low, high, **ends)
+        self._expected = expected
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
         """The number."""
-        number = click.FLOAT.convert(value, param, ctx)
+        try:
+            number = float(super().convert(value, param, ctx))
+        except click.BadParameter:
+            number = math.nan
         if not math.isfinite(number):
-            self.fail(f"value {value!r}: expected a finite number", param, ctx)
-        return float(super().convert(value, param, ctx))
+            self.fail(f"value {value!r}: expected {self._expected}", param, ctx)
+        return number
 
 
 class NamedPath(click.Path):
@@ -70,7 +89,7 @@ def engine_option(help_text: str) -> Callable[[Any], Any]:
 
 def workers_option(help_text: str) -> Callable[[Any], Any]:
     """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
-    return click.option("--workers", type=click.IntRange(1, 4096), help=help_text)
+    return click.option("--workers", type=Whole(1, 4096), help=help_text)
 
 
 def available_cores() -> int:

@@ -8,7 +8,14 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import NamedPath, available_cores, examples, folder, workers_option
+from simmpp.commands.options import (
+    NamedPath,
+    Whole,
+    available_cores,
+    examples,
+    folder,
+    workers_option,
+)
 from simmpp.commands.progress import progress_of_sweep
 from simmpp.commands.terminal import announce_compilation, notice, output, table
 from simmpp.studies.nebel98.reproduce import Reproduction, reproduce
@@ -31,14 +38,14 @@ POINTS_FAILED = 1
 )
 @click.option(
     "--seeds",
-    type=click.IntRange(1, 10_000),
+    type=Whole(1, 10_000),
     metavar="N",
     help="Draws of each point.  [default: the experiments' 8]",
 )
 @workers_option("Processes on this machine.  [default: one for each core]")
 @click.option(
     "--resolution",
-    type=click.IntRange(1, 16384),
+    type=Whole(1, 16384),
     metavar="R",
     help="Pixels along each side, for a quick look.  [default: the paper's 512]",
 )

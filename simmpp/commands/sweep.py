@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from simmpp.commands.options import (
-    FiniteRange,
     NamedPath,
+    Number,
     available_cores,
     engine_option,
     examples,
@@ -38,7 +38,7 @@ from simmpp.sweeps.executors import start_server
 @click.option(
     "--timeout",
     "timeout_s",
-    type=FiniteRange(0, min_open=True),
+    type=Number("a finite number of seconds above 0", 0, min_open=True),
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )
