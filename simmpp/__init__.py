@@ -14,7 +14,6 @@ What the commands do, from Python::
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -80,6 +79,8 @@ def __dir__() -> list[str]:
 def __getattr__(name: str) -> Any:
     """Import on first use: ``simmpp --help`` must not wait for numba."""
     if name == "__version__":
+        from importlib.metadata import version  # takes as long as all of simmpp --help
+
         return version("simmpp")
     if name not in _HOME:
         raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
