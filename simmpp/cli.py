@@ -12,49 +12,22 @@ import click
 from simmpp.common.errors import InputError, ModelError
 
 COMMANDS = {
-    "run": ("simmpp.commands.run:run_command", "Compare dataflow policies at one point."),
-    "sweep": (
-        "simmpp.commands.sweep:sweep_command",
-        "Simulate every combination of the values under the key sweep.",
-    ),
-    "report": (
-        "simmpp.commands.report:report_command",
-        "Make a page of what sweep, run, bench or reproduce wrote.",
-    ),
-    "compare": (
-        "simmpp.commands.compare:compare_command",
-        "Compare the rows of two folders, point by point.",
-    ),
-    "check": (
-        "simmpp.commands.check:check_command",
-        "Compare a sweep with its baseline; exit with 1 if it moved.",
-    ),
-    "model": (
-        "simmpp.commands.model:model_command",
-        "Say which dataflow the paper's analytical model expects to win.",
-    ),
-    "bench": (
-        "simmpp.commands.bench:bench_command",
-        "Measure the run time of each method against its error.",
-    ),
-    "reproduce": (
-        "simmpp.commands.reproduce:reproduce_command",
-        "Repeat the experiments of Nebel 1998 and judge its claims.",
-    ),
-    "scene": (
-        "simmpp.commands.scene:scene_command",
-        "List the objects and materials of a scene.",
-    ),
-    "workload": (
-        "simmpp.commands.workload:workload_command",
-        "List the rays of a picture, and which objects they need.",
-    ),
-    "machine": (
-        "simmpp.commands.machine:machine_command",
-        "Print every constant of a machine with its source.",
-    ),
+    "run": "Compare dataflow policies at one point.",
+    "sweep": "Simulate every combination of the values under the key sweep.",
+    "report": "Make a page of what sweep, run, bench or reproduce wrote.",
+    "compare": "Compare the rows of two folders, point by point.",
+    "check": "Compare a sweep with its baseline; exit with 1 if it moved.",
+    "model": "Say which dataflow the paper's analytical model expects to win.",
+    "bench": "Measure the run time of each method against its error.",
+    "reproduce": "Repeat the experiments of Nebel 1998 and judge its claims.",
+    "scene": "List the objects and materials of a scene.",
+    "workload": "List the rays of a picture, and which objects they need.",
+    "machine": "Print every constant of a machine with its source.",
 }
-"""Where each command is, and the first line of its help, in the order of work."""
+"""The commands in the order of work, with the first line of their help.
+
+``run`` is ``run_command`` of simmpp.commands.run, and so on.
+"""
 
 INPUT_ERROR, MODEL_ERROR, INTERRUPTED, READER_GONE = 2, 70, 130, 141
 """Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT), and a
@@ -75,14 +48,14 @@ class Commands(click.Group):
         """Import the command; None if there is none so called."""
         if cmd_name not in COMMANDS:
             return None
-        module, _, attribute = COMMANDS[cmd_name][0].partition(":")
-        command: click.Command = getattr(import_module(module), attribute)
+        module = import_module(f"simmpp.commands.{cmd_name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands from the table alone: click would import each for its help."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+            formatter.write_dl(list(COMMANDS.items()))
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command named."""

@@ -91,7 +91,6 @@ def model_command(
 
 def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
     """``startup=0.1`` as a name and a factor."""
-
     ratios: list[tuple[str, float]] = []
     for text in texts:
         name, _, number = text.partition("=")

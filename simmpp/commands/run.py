@@ -29,6 +29,7 @@ from simmpp.run.record import record, write_record
 from simmpp.run.rows import row, write_rows
 from simmpp.run.summary import summary
 from simmpp.scene.load import load_scene
+from simmpp.workload.trace.shading import render, save_png
 from simmpp.workload.trace.verify import verify
 
 VERIFY_FAILED = 1
@@ -162,16 +163,12 @@ def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    # Only --picture needs it.
-    from simmpp.workload.trace.shading import render, save_png
-
     scene = load_scene(point.config.scene_spec)
     save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-
     scene, failed = load_scene(point.config.scene_spec), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
