@@ -68,8 +68,20 @@ __all__ = [
 ]
 
 
+__version__: str
+
+
+def __dir__() -> list[str]:
+    """What there is for others, imported or not."""
+    return sorted([*__all__, "__version__"])
+
+
 def __getattr__(name: str) -> Any:
     """Import on first use: ``simmpp --help`` must not wait for numba."""
+    if name == "__version__":
+        from importlib.metadata import version  # takes as long as all of simmpp --help
+
+        return version("simmpp")
     if name not in _HOME:
         raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
     module, _, attribute = _HOME[name].partition(":")

@@ -1,25 +1,33 @@
-"""The command line: ``simmpp run``, ``sweep`` and the others; mistakes become one line."""
+"""The command line: a table of commands, imported when they are needed; mistakes are one line."""
 
 from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from typing import Any, NoReturn
 
 import click
 
-from simmpp.commands.bench import bench_command
-from simmpp.commands.check import check_command
-from simmpp.commands.compare import compare_command
-from simmpp.commands.machine import machine_command
-from simmpp.commands.model import model_command
-from simmpp.commands.report import report_command
-from simmpp.commands.reproduce import reproduce_command
-from simmpp.commands.run import run_command
-from simmpp.commands.scene import scene_command
-from simmpp.commands.sweep import sweep_command
-from simmpp.commands.workload import workload_command
 from simmpp.common.errors import InputError, ModelError
+
+COMMANDS = {
+    "run": "Compare dataflow policies at one point.",
+    "sweep": "Simulate every combination of the values under the key sweep.",
+    "report": "Make a page of what sweep, run, bench or reproduce wrote.",
+    "compare": "Compare the rows of two folders, point by point.",
+    "check": "Compare a sweep with its baseline; exit with 1 if it moved.",
+    "model": "Say which dataflow the paper's analytical model expects to win.",
+    "bench": "Measure the run time of each method against its error.",
+    "reproduce": "Repeat the experiments of Nebel 1998 and judge its claims.",
+    "scene": "List the objects and materials of a scene.",
+    "workload": "List the rays of a picture, and which objects they need.",
+    "machine": "Print every constant of a machine with its source.",
+}
+"""The commands in the order of work, with the first line of their help.
+
+``run`` is ``run_command`` of simmpp.commands.run, and so on.
+"""
 
 INPUT_ERROR, MODEL_ERROR, INTERRUPTED, READER_GONE = 2, 70, 130, 141
 """Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT), and a
@@ -27,7 +35,27 @@ pipe that nobody reads any more, as with ``| head`` (128 + SIGPIPE)."""
 
 
 class Commands(click.Group):
-    """The group of commands; whatever simmpp raises on purpose ends it without a traceback."""
+    """The group of commands; whatever simmpp raises on purpose ends it without a traceback.
+
+    A command's module, and numba with it, is imported when the command is run or asked for help.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names in the order of work, not of the alphabet."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import the command; None if there is none so called."""
+        if cmd_name not in COMMANDS:
+            return None
+        module = import_module(f"simmpp.commands.{cmd_name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command")
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands from the table alone: click would import each for its help."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command named."""
@@ -35,6 +63,10 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except InputError as error:
             _quit(f"error: {error}", INPUT_ERROR)
+        except click.MissingParameter:
+            raise  # a wrong call, not a wrong value: click shows how to call
+        except click.BadParameter as error:
+            _quit(f"error: {_named(error.param)}: {error.message.rstrip('.')}", INPUT_ERROR)
         except BrokenPipeError:
             _leave_pipe()
         except OSError as error:
@@ -55,6 +87,13 @@ def _leave_pipe() -> NoReturn:
     sys.exit(READER_GONE)
 
 
+def _named(param: click.Parameter | None) -> str:
+    """The option or argument as the user knows it."""
+    if isinstance(param, click.Option):
+        return param.opts[0]
+    return param.human_readable_name if param else "argument"
+
+
 def _quit(message: str, code: int) -> NoReturn:
     click.echo("simmpp: " + _printable(" ".join(message.splitlines())), err=True)
     sys.exit(code)
@@ -73,16 +112,3 @@ def main() -> None:
     Simulates a parallel machine that traces the real rays of a scene that does not fit into the
     memory of one of its processing elements (PEs).
     """
-
-
-main.add_command(run_command)
-main.add_command(sweep_command)
-main.add_command(check_command)
-main.add_command(bench_command)
-main.add_command(compare_command)
-main.add_command(machine_command)
-main.add_command(model_command)
-main.add_command(report_command)
-main.add_command(reproduce_command)
-main.add_command(scene_command)
-main.add_command(workload_command)

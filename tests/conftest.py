@@ -1,11 +1,37 @@
-"""Settings of all tests."""
+"""Settings of all tests; each bears the name of its folder as a mark, and each folder its time."""
 
 from __future__ import annotations
 
 import os
+from collections import Counter, defaultdict
 
+import pytest
 from hypothesis import settings
 
 # The first example of a test may compile for seconds. On CI the same examples are tried each time.
 settings.register_profile("simmpp", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("simmpp")
+
+
+def layer(nodeid: str) -> str:
+    """``unit`` of ``tests/unit/sweeps/test_plan.py::test_plan``."""
+    return nodeid.split("/")[1]
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """``pytest -m unit`` runs the tests of that folder."""
+    item.add_marker(layer(item.nodeid))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """How many tests each layer ran, and how long they took with what they had to prepare."""
+    tests, seconds = Counter[str](), defaultdict[str, float](float)
+    for outcome, reports in terminalreporter.stats.items():
+        for report in reports:
+            if isinstance(report, pytest.TestReport):
+                tests[layer(report.nodeid)] += report.when == "call" or outcome == "skipped"
+                seconds[layer(report.nodeid)] += report.duration
+    if seconds:
+        terminalreporter.section("layers")
+    for name, duration in seconds.items():
+        terminalreporter.line(f"{name:10}{tests[name]:6} tests {duration:8.1f} s")

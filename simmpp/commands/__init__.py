@@ -1,1 +1,1 @@
-"""The commands, one file each; heavy imports happen inside them, so that ``--help`` is quick."""
+"""The commands, one file each; :mod:`simmpp.cli` imports the one that is run."""

@@ -5,25 +5,34 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath, available_cores, set_option, workers_option
-
-if TYPE_CHECKING:
-    from simmpp.studies.bench.errors import Rung
+from simmpp.commands.options import (
+    NamedPath,
+    Whole,
+    available_cores,
+    examples,
+    folder,
+    set_option,
+    workers_option,
+)
+from simmpp.commands.progress import progress_of_sweep
+from simmpp.commands.terminal import announce_compilation, notice, output, table
+from simmpp.config.config import load_config
+from simmpp.studies.bench.bench import bench
+from simmpp.studies.bench.errors import Rung
 
 RUNS_FAILED = 1
 LARGE = 10
 """Error from which on it is told as a factor."""
 
 
-@click.command("bench")
+@click.command("bench", epilog=examples("simmpp bench configs/bench.yaml --seeds 16"))
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @click.option(
     "--seeds",
-    type=click.IntRange(4, 10_000),
+    type=Whole(4, 10_000),
     default=32,
     show_default=True,
     metavar="N",
@@ -43,39 +52,31 @@ def bench_command(
     overrides: tuple[str, ...],
     out: Path | None,
 ) -> None:
-    """Measure run time against error over the points of a configuration.
+    """Measure the run time of each method against its error.
 
-    Each method (the analytical models, simulation) is tried at every point, simulation with 1, 2,
-    4, ... seeds. Errors are against the mean of the other simulated seeds; times are the
+    Each method (the analytical models, simulation) is tried at every point of CONFIG, simulation
+    with 1, 2, 4, ... seeds. Errors are against the mean of the other simulated seeds; times are the
     processor's, tracing apart. Writes bench.csv, bench.png and bench.svg. The same command
     continues what was interrupted, or adds seeds. Exits with 1 if a run failed.
     """
-    from simmpp.commands.options import folder
-    from simmpp.commands.sweeping import progress_of_sweep
-    from simmpp.commands.terminal import announce_compilation, notice
-    from simmpp.config.config import load_config
-    from simmpp.studies.bench.bench import bench
-
     config = load_config(config_path, overrides)
     out = Path("results", config_path.stem) if out is None else out
     folder(out, "--out")
     announce_compilation()
     with progress_of_sweep() as watcher:
-        done = bench(
+        outcome = bench(
             config, seeds=seeds, out=out, workers=workers or available_cores(), watcher=watcher
         )
-    _print(done.rungs)
-    for path in done.files:
+    _print(outcome.rungs)
+    for path in outcome.files:
         click.echo(f"wrote {path}")
-    for error in sorted(set(done.failed)):
-        notice(f"{done.failed.count(error)} runs failed: {error}")
-    sys.exit(RUNS_FAILED if done.failed else 0)
+    for error in sorted(set(outcome.failed)):
+        notice(f"{outcome.failed.count(error)} runs failed: {error}")
+    sys.exit(RUNS_FAILED if outcome.failed else 0)
 
 
 def _print(rungs: Sequence[Rung]) -> None:
-    from simmpp.commands.terminal import output, table
-
-    shown = [
+    lines = [
         {
             "scene": rung.scene,
             "method": rung.method,
@@ -88,7 +89,7 @@ def _print(rungs: Sequence[Rung]) -> None:
         }
         for rung in rungs
     ]
-    output().print(table(shown))
+    output().print(table(lines))
     click.echo("\nrelative errors: root mean square over points and policies (and the worst)")
 
 

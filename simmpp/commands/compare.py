@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
-
-if TYPE_CHECKING:
-    from simmpp.report.page.difference import Difference
+from simmpp.commands.options import NamedPath, examples, writable
+from simmpp.commands.terminal import output, table
+from simmpp.report.page.comparison import reasons, verdict, write_comparison
+from simmpp.report.page.difference import Difference, difference_of, line, ranked, summary
+from simmpp.report.page.folder import read_folder
 
 SHOWN = 25
 """Lines of the table of what moved."""
 
 
-@click.command("compare")
+@click.command(
+    "compare", epilog=examples("simmpp compare results/before results/after --out difference.html")
+)
 @click.argument("before_path", metavar="BEFORE", type=NamedPath())
 @click.argument("after_path", metavar="AFTER", type=NamedPath())
 @click.option("--out", type=NamedPath(), metavar="FILE.html", help="Write a page with the curves.")
@@ -27,36 +29,28 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
     interval of their ratios. Always exits with 0 (2 for what can't be read): for a verdict in
     continuous integration there is check.
     """
-    from simmpp.commands.options import writable
-    from simmpp.report.page.comparison import reasons, verdict, write_comparison
-    from simmpp.report.page.difference import difference_of
-    from simmpp.report.page.folder import read_folder
-
     writable(out, "--out", ".html")
     before, after = read_folder(before_path, "BEFORE"), read_folder(after_path, "AFTER")
-    found = difference_of(before, after)
-    _print(found)
+    difference = difference_of(before, after)
+    _print(difference)
     for reason in reasons(before, after):
         click.echo(reason)
     if out is not None:
-        write_comparison(before, after, found, out)
+        write_comparison(before, after, difference, out)
         click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
-    click.echo(f"compare: {verdict(found)}")
+    click.echo(f"compare: {verdict(difference)}")
 
 
-def _print(found: Difference) -> None:
-    from simmpp.commands.terminal import output, table
-    from simmpp.report.page.difference import line, ranked, summary
-
+def _print(difference: Difference) -> None:
     console = output()
-    console.print(table(summary(found)))
+    console.print(table(summary(difference)))
     console.print()
-    changes = ranked(found.changes)
+    changes = ranked(difference.changes)
     if changes:
         console.print(table([line(change) for change in changes[:SHOWN]]))
     if len(changes) > SHOWN:
         console.print(f"... and {len(changes) - SHOWN} smaller ones; a page (--out) has more")
-    for name, points in (("before", found.only_before), ("after", found.only_after)):
+    for name, points in (("before", difference.only_before), ("after", difference.only_after)):
         for point in points[:SHOWN]:
             console.print(f"only {name}: {point}", soft_wrap=True)
         if len(points) > SHOWN:

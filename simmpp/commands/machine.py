@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import click
 
+from simmpp.commands.options import examples
 
-@click.command("machine")
+
+@click.command("machine", epilog=examples("simmpp machine t3e"))
 @click.argument("preset")
 def machine_command(preset: str) -> None:
     """Print every constant of a machine with its source.

@@ -2,20 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import FiniteRange, NamedPath, set_option
+from simmpp.commands.options import NamedPath, Number, examples, folder, set_option
+from simmpp.commands.terminal import notice, output, table
+from simmpp.commands.tracing import workload as workload_of
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import format_ps
+from simmpp.config.config import Config, load_config
+from simmpp.model.analytical import Makespans, rays_of
+from simmpp.model.border import borders, claims
+from simmpp.model.costs import GROUPS, costs_of
+from simmpp.studies.nebel98.figure2_data import (
+    ANALYTICAL,
+    DEFAULT_RATIOS,
+    MEASURED,
+    model_grid,
+    model_times,
+    panels,
+    rows_of,
+    write_model,
+)
+from simmpp.workload.workload import Workload
 
-if TYPE_CHECKING:
-    from simmpp.config.config import Config
-    from simmpp.model.analytical import Makespans
-    from simmpp.workload.workload import Workload
 
-
-@click.command("model")
+@click.command(
+    "model",
+    epilog=examples(
+        "simmpp model configs/sweep.yaml",
+        "simmpp model configs/sweep.yaml --ratio packing=10 --out results/model",
+    ),
+)
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
 @set_option("Set a dotted key; method=analytical-measured feeds the model with measured r.")
 @click.option(
@@ -28,7 +48,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--imbalance",
-    type=FiniteRange(0, 1),
+    type=Number("a number from 0 to 1", 0, 1),
     default=0.0,
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",
@@ -41,25 +61,14 @@ def model_command(
     imbalance: float,
     out: Path | None,
 ) -> None:
-    """Say which classical dataflow the paper's analytical model expects to win.
+    """Say which dataflow the paper's analytical model expects to win.
 
-    The grid is that of the sweep's axes processors and memory.fraction, where there are such, and
-    that of the paper's claims (nb = 8 ... 1024) otherwise. Rays are those of CONFIG's scene at each
-    step, costs those of its machine. --out writes figure2.csv, and figure2.png and .svg: the winner
-    over nb and x for several cost ratios, and the border.
+    It knows the two classical ones, object and ray dataflow. The grid is that of the sweep's axes
+    processors and memory.fraction, where there are such, and that of the paper's claims (nb = 8 ...
+    1024) otherwise. Rays are those of CONFIG's scene at each step, costs those of its machine.
+    --out writes figure2.csv, and figure2.png and .svg: the winner over nb and x for several cost
+    ratios, and the border.
     """
-    from simmpp.commands.options import folder
-    from simmpp.commands.terminal import notice, output, table
-    from simmpp.commands.tracing import workload as workload_of
-    from simmpp.config.config import load_config
-    from simmpp.studies.nebel98.figure2_data import (
-        ANALYTICAL,
-        MEASURED,
-        model_grid,
-        model_times,
-        rows_of,
-    )
-
     config = load_config(config_path, overrides)
     folder(out, "--out")
     ratios = _ratios(ratio_texts)
@@ -71,10 +80,10 @@ def model_command(
     measured = config.settings.method == MEASURED
     method = MEASURED if measured else ANALYTICAL
     rows = rows_of(times, workload.name, method, 0.0 if measured else imbalance)
-    shown = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
+    columns = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
     console = output()
     console.print(_heading(config, workload))
-    console.print(table([{name: _cell(name, row[name]) for name in shown} for row in rows]))
+    console.print(table([{name: _cell(name, row[name]) for name in columns} for row in rows]))
     console.print(_conclusion(times))
     if out is not None:
         _write(config, workload, rows, ratios, out)
@@ -82,12 +91,6 @@ def model_command(
 
 def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
     """``startup=0.1`` as a name and a factor."""
-    import math
-
-    from simmpp.common.errors import ConfigError
-    from simmpp.model.costs import GROUPS
-    from simmpp.studies.nebel98.figure2_data import DEFAULT_RATIOS
-
     ratios: list[tuple[str, float]] = []
     for text in texts:
         name, _, number = text.partition("=")
@@ -103,8 +106,6 @@ def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
 
 
 def _heading(config: Config, workload: Workload) -> str:
-    from simmpp.model.analytical import rays_of
-
     rays = rays_of(workload)
     return (
         f"{workload.name}: n0 = {workload.n_primaries} rays at the start, {len(rays.tests)} steps, "
@@ -115,21 +116,17 @@ def _heading(config: Config, workload: Workload) -> str:
 
 
 def _cell(name: str, value: object) -> object:
-    from simmpp.common.units import format_ps
-
     if name.endswith("_ps") and isinstance(value, int):
         return format_ps(value)
     return f"{value:.4g}" if isinstance(value, float) else value
 
 
 def _conclusion(times: Makespans) -> str:
-    from simmpp.model.border import borders, claims
-
     at = zip(times.processors.tolist(), borders(times).tolist(), strict=True)
     lines = [f"nb = {nb}: the winner changes at x = {x:.3f}" for nb, x in at if x == x]
-    for each in claims(times):
-        verdict = "holds" if each.holds else "does not hold"
-        lines.append(f"claim {each.claim} {verdict}: {each.simulated}")
+    for claim in claims(times):
+        verdict = "holds" if claim.holds else "does not hold"
+        lines.append(f"claim {claim.claim} {verdict}: {claim.simulated}")
     return "\n" + "\n".join(lines or ["no change of winner at any nb"])
 
 
@@ -140,9 +137,7 @@ def _write(
     ratios: tuple[tuple[str, float], ...],
     out: Path,
 ) -> None:
-    from simmpp.model.analytical import rays_of
-    from simmpp.model.costs import costs_of
-    from simmpp.studies.nebel98.figure2_data import model_grid, panels, write_model
+    # Only --out draws, and matplotlib takes half a second.
     from simmpp.studies.nebel98.figure2_plot import draw_figure2
 
     write_model(rows, out)

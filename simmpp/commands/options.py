@@ -1,4 +1,4 @@
-"""Options that several commands have, and types that refuse what click's own let through."""
+"""Options that several commands have, and the checks of values that click would let through."""
 
 from __future__ import annotations
 
@@ -13,11 +13,102 @@ import click
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import picoseconds
 
-# --- files that commands write: their folders are checked before hours of work, not after ---
+ENGINES = ("compiled", "simpy")
+"""Names of :data:`simmpp.engine.simulate.ENGINES`, which would import numba: sweep must not yet."""
+LAST_PS = (1 << 63) - 1
+"""Later than any run ends."""
+
+
+class Whole(click.IntRange):
+    """An integer between bounds."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """The integer."""
+        try:
+            return int(super().convert(value, param, ctx))
+        except click.BadParameter:
+            expected = f"expected an integer from {self.min} to {self.max}"
+            self.fail(f"value {value!r}: {expected}", param, ctx)
+
+
+class Number(click.FloatRange):
+    """A number between bounds; NaN, which is within any, is refused, and so is infinity."""
+
+    def __init__(self, expected: str, low: float, high: float | None = None, **ends: bool) -> None:
+        super().__init__(low, high, **ends)
+        self._expected = expected
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The number."""
+        try:
+            number = float(super().convert(value, param, ctx))
+        except click.BadParameter:
+            number = math.nan
+        if not math.isfinite(number):
+            self.fail(f"value {value!r}: expected {self._expected}", param, ctx)
+        return number
+
+
+class NamedPath(click.Path):
+    """A path; the empty text, which pathlib takes for the current folder, is refused."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path."""
+        if value == "":
+            self.fail("value '': expected the name of a file or folder", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+class Word(click.Choice[str]):
+    """One of a few words; a mistake is told as in a configuration."""
+
+    def get_invalid_choice_message(self, value: Any, ctx: click.Context | None) -> str:
+        """What was given and what was expected."""
+        return f"value {value!r}: expected {' or '.join(self.choices)}"
+
+
+def set_option(help_text: str) -> Callable[[Any], Any]:
+    """``--set KEY=VALUE``, which the command gets as ``overrides``."""
+    return click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=help_text)
+
+
+def engine_option(help_text: str) -> Callable[[Any], Any]:
+    """``--engine NAME``, which the command gets as ``engine``, overrides to add to those of set."""
+    return click.option(
+        "--engine",
+        type=Word(ENGINES),
+        callback=lambda ctx, param, name: () if name is None else (f"engine={name}",),
+        help=help_text,
+    )
+
+
+def workers_option(help_text: str) -> Callable[[Any], Any]:
+    """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
+    return click.option("--workers", type=Whole(1, 4096), help=help_text)
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def examples(*lines: str) -> str:
+    """The end of a command's help: calls to begin with, a line each."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
 def writable(path: Path | None, option: str, suffix: str = "") -> None:
-    """Raise ConfigError unless a file so called can be written at ``path``; None is fine."""
+    """Raise ConfigError unless a file so called can be written at ``path``; None is fine.
+
+    Commands ask before hours of work, not after.
+    """
     if path is None:
         return
     if not path.name.lower().endswith(suffix):
@@ -43,58 +134,6 @@ def folder(path: Path | None, option: str) -> None:
         raise ConfigError(f"{option}: value {str(path)!r}: expected a folder that can be written")
 
 
-LAST_PS = (1 << 63) - 1
-"""Later than any run ends."""
-
-
-class FiniteRange(click.FloatRange):
-    """A number between bounds; NaN, which is within any, is refused, and so is infinity."""
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """The number."""
-        number: float = click.FLOAT.convert(value, param, ctx)
-        if not math.isfinite(number):
-            raise ConfigError(f"{_named(param)}: value {value!r}: expected a finite number")
-        return float(super().convert(value, param, ctx))
-
-
-class NamedPath(click.Path):
-    """A path; the empty text, which pathlib takes for the current folder, is refused."""
-
-    def __init__(self) -> None:
-        super().__init__(path_type=Path)
-
-    def convert(
-        self,
-        value: Any,
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> Any:
-        """The path."""
-        if value == "":
-            raise ConfigError(f"{_named(param)}: value '': expected the name of a file or folder")
-        return super().convert(value, param, ctx)
-
-
-def set_option(help_text: str) -> Callable[[Any], Any]:
-    """``--set KEY=VALUE``, which the command gets as ``overrides``."""
-    return click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=help_text)
-
-
-def workers_option(help_text: str) -> Callable[[Any], Any]:
-    """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
-    return click.option("--workers", type=click.IntRange(1, 4096), help=help_text)
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def window_of(text: str, option: str) -> tuple[int, int]:
     """``START:END``, two times with units, in picoseconds.
 
@@ -110,10 +149,3 @@ def window_of(text: str, option: str) -> tuple[int, int]:
         problem = "expected START:END such as '0 ms:5 ms', START before END"
         raise ConfigError(f"{option}: value {text!r}: {problem}")
     return start_ps, end_ps
-
-
-def _named(param: click.Parameter | None) -> str:
-    """The option or argument as the user knows it."""
-    if isinstance(param, click.Option):
-        return param.opts[0]
-    return param.make_metavar(click.get_current_context()) if param else "argument"

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+import numpy as np
+from numpy.typing import NDArray
 
-    from simmpp.engine.record.log import Sink
-    from simmpp.policy.parameters import PolicyParameters
-    from simmpp.run.point import Point, PolicyRun
+from simmpp.commands.options import writable
+from simmpp.common.errors import ConfigError
+from simmpp.engine.record.log import Sink
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.timeline.recorder import SUFFIXES, TimelineRecorder
+from simmpp.report.timeline.slices import Window
+from simmpp.run.point import Point, PolicyRun
 
 
 class Looks(NamedTuple):
@@ -27,10 +30,6 @@ class Looks(NamedTuple):
 
 def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
     """Raise ConfigError unless a timeline can be written there."""
-    from simmpp.commands.options import writable
-    from simmpp.common.errors import ConfigError
-    from simmpp.report.timeline.recorder import SUFFIXES
-
     if path is None and window is not None:
         raise ConfigError("--timeline-window: expected --timeline FILE beside it")
     if path is not None and not path.name.lower().endswith(SUFFIXES):
@@ -55,18 +54,15 @@ class Recorder(Protocol):
 @contextmanager
 def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
     """What writes the timeline and the pictures; the timeline is ended whatever happens."""
-    from simmpp.report.timeline.slices import Window
-
     with ExitStack() as stack:
         recorders: list[Recorder] = []
         if looks.timeline is not None:
-            from simmpp.report.timeline.recorder import TimelineRecorder
-
             window = Window(*looks.window_ps) if looks.window_ps else None
             timeline = TimelineRecorder(looks.timeline, point.machine, window)
             stack.callback(timeline.close)
             recorders.append(timeline)
         if looks.figures is not None:
+            # Only --figures draws, and matplotlib takes half a second.
             from simmpp.report.run_figures.recorder import FiguresRecorder
 
             recorders.append(FiguresRecorder(looks.figures, point))

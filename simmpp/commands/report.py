@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, examples, folder
+from simmpp.commands.terminal import notice, progress_bars
+from simmpp.report.page.folder import read_folder
+from simmpp.report.page.overlay import write_stills
+from simmpp.report.page.report import FIGURES, PAGE, Report, follow, report_of, write_page
 
-if TYPE_CHECKING:
-    from simmpp.report.page.report import Report
 
-
-@click.command("report")
+@click.command(
+    "report",
+    epilog=examples("simmpp report results/sweep", "simmpp report --live results/sweep"),
+)
 @click.argument("folder_path", metavar="DIR", type=NamedPath())
 @click.option(
     "--live",
@@ -21,37 +24,28 @@ if TYPE_CHECKING:
     help="Keep the page up to date while a sweep works in DIR; ends with it, or with Ctrl-C.",
 )
 def report_command(folder_path: Path, live: bool) -> None:
-    """Make a page of the rows in DIR, which sweep, run, bench or reproduce wrote.
+    """Make a page of what sweep, run, bench or reproduce wrote.
 
-    Writes DIR/report.html, which opens in any browser and loads nothing from anywhere: who wins
-    where and how surely, the curves, and every number of the point that is clicked on; and each
-    figure in DIR/figures as PNG and SVG.
+    DIR is their folder. Writes DIR/report.html, which opens in any browser and loads nothing from
+    anywhere: who wins where and how surely, the curves, and every number of the point that is
+    clicked on; and each figure in DIR/figures as PNG and SVG.
     """
-    from simmpp.commands.options import folder
-    from simmpp.report.page.folder import read_folder
-    from simmpp.report.page.report import PAGE, report_of, write_page
-
     if live:
         _follow(folder_path, folder_path / PAGE)
-    found = read_folder(folder_path)
+    report = report_of(read_folder(folder_path))
     folder(folder_path, "DIR")
-    report = report_of(found)
     page = write_page(report)
-    click.echo(f"{page}: {len(found.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
+    click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
     _draw(report)
 
 
 def _follow(folder_path: Path, page: Path) -> None:
     """Say how many rows are done whenever the page is written."""
-    from simmpp.commands.terminal import notice
-    from simmpp.report.page.folder import read_folder
-    from simmpp.report.page.report import follow, report_of, write_page
-
     notice(f"{page}: reloads itself while the sweep runs")
     try:
-        for found in follow(folder_path):
-            failed = f", {len(found.failed)} failed" if found.failed else ""
-            notice(f"{len(found.rows)} of {found.planned} rows{failed}")
+        for present in follow(folder_path):
+            failed = f", {len(present.failed)} failed" if present.failed else ""
+            notice(f"{len(present.rows)} of {present.planned} rows{failed}")
     except KeyboardInterrupt:
         write_page(report_of(read_folder(folder_path)))  # reloads itself no more
         raise
@@ -59,11 +53,6 @@ def _follow(folder_path: Path, page: Path) -> None:
 
 def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
-    from simmpp.commands.options import folder
-    from simmpp.commands.terminal import progress_bars
-    from simmpp.report.page.overlay import write_stills
-    from simmpp.report.page.report import FIGURES
-
     to = report.folder.path / FIGURES
     folder(to, "DIR")
     plates = sum(len(figure.plates) for figure in report.figures)

@@ -5,25 +5,46 @@ from __future__ import annotations
 import sys
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
+import numpy as np
+from rich.progress import TaskID
 
-from simmpp.commands.options import NamedPath, set_option, window_of
+from simmpp.commands.options import (
+    NamedPath,
+    engine_option,
+    examples,
+    folder,
+    set_option,
+    window_of,
+    writable,
+)
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
-
-if TYPE_CHECKING:
-    from rich.progress import TaskID
-
-    from simmpp.config.config import Config
-    from simmpp.run.point import Point, PolicyRun
+from simmpp.commands.terminal import notice, output, progress_bars
+from simmpp.commands.tracing import workload
+from simmpp.common.errors import ConfigError
+from simmpp.config.config import Config, load_config
+from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
+from simmpp.run.record import record, write_record
+from simmpp.run.rows import row, write_rows
+from simmpp.run.summary import summary
+from simmpp.scene.load import load_scene
+from simmpp.workload.trace.shading import render, save_png
+from simmpp.workload.trace.verify import verify
 
 VERIFY_FAILED = 1
 
 
-@click.command("run")
+@click.command(
+    "run",
+    epilog=examples(
+        "simmpp run configs/quick.yaml --picture quick.png",
+        "simmpp run configs/quick.yaml --set memory.fraction=5% --figures figures",
+        "simmpp run configs/quick.yaml --timeline cut.json --timeline-window '0 ms:5 ms'",
+    ),
+)
 @click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@click.option("--engine", help="The event loop (see the key engine).")
+@engine_option("The event loop.  [default: the key engine, or else compiled]")
 @set_option("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
 @click.option("--out", type=NamedPath(), help="Folder for run.json and results.csv.")
 @click.option("--picture", type=NamedPath(), help="Write the picture as PNG.")
@@ -52,7 +73,7 @@ VERIFY_FAILED = 1
 )
 def run_command(
     config_path: Path,
-    engine: str | None,
+    engine: tuple[str, ...],
     overrides: tuple[str, ...],
     out: Path | None,
     picture: Path | None,
@@ -61,18 +82,13 @@ def run_command(
     figures: Path | None,
     verify: bool,
 ) -> None:
-    """Compare dataflow policies on one scene and one machine.
+    """Compare dataflow policies at one point.
 
-    CONFIG is a YAML file; its keys are listed in the README. Object dataflow is run as the
-    reference of the profits and the replicated scene as the ceiling, if they are not named.
+    CONFIG is a YAML file: one scene, one machine, the policies. `simmpp keys` lists its keys.
+    Object dataflow is run as the reference of the profits and the replicated scene as the ceiling,
+    if they are not named.
     """
-    from simmpp.commands.options import folder, writable
-    from simmpp.commands.terminal import notice
-    from simmpp.config.config import load_config
-
-    if engine is not None:
-        overrides = (*overrides, f"engine={engine}")
-    config = load_config(config_path, overrides)
+    config = load_config(config_path, (*overrides, *engine))
     writable(picture, "--picture", ".png")
     folder(out, "--out")
     window_ps = None if window is None else window_of(window, "--timeline-window")
@@ -90,11 +106,6 @@ def run_command(
 
 def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None:
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
-    from simmpp.commands.terminal import output
-    from simmpp.commands.tracing import workload
-    from simmpp.run.point import make_point, refuse_models
-    from simmpp.run.summary import summary
-
     refuse_models(config)
     if looks.picture or verify:
         _require_scene(config, "--picture" if looks.picture else "--verify")
@@ -114,8 +125,6 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
 
 
 def _require_scene(config: Config, option: str) -> None:
-    from simmpp.common.errors import ConfigError
-
     if config.settings.scene.workload is not None:
         problem = "expected a scene to trace; a workload file has rays, but no geometry"
         raise ConfigError(problem, where=option)
@@ -125,9 +134,6 @@ def _simulate(
     point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
-    from simmpp.commands.terminal import progress_bars
-    from simmpp.run.point import run_point
-
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
         tasks: dict[str, TaskID] = {}
@@ -137,43 +143,32 @@ def _simulate(
                 tasks[title] = bars.add_task(f"simulating {title}", total=n_rays)
             bars.update(tasks[title], completed=n_rays - rays_left)
 
-        each = run_point(
+        finished = run_point(
             point,
             record_tests=record_tests,
             record_counters=any(recorder.needs_counters for recorder in recorders),
             log_of=partial(sink_of, recorders),
             progress=progress,
         )
-        for run in each:
+        for run in finished:
             runs.append(run)
             for recorder in recorders:
                 recorder.end(run)
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    from simmpp.run.record import record, write_record
-    from simmpp.run.rows import row, write_rows
-
     write_record(record(point, runs), out / "run.json")
     write_rows([row(point, run) for run in runs], out / "results.csv")
 
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    from simmpp.scene.load import load_scene
-    from simmpp.workload.trace.shading import render, save_png
-
     scene = load_scene(point.config.scene_spec)
     save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    import numpy as np
-
-    from simmpp.scene.load import load_scene
-    from simmpp.workload.trace.verify import verify
-
     scene, failed = load_scene(point.config.scene_spec), False
     nothing = np.zeros(0, np.int32)
     for run in runs:

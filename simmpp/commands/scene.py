@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
+from rich.table import Table
 
-from simmpp.commands.options import NamedPath
+from simmpp.commands.options import NamedPath, examples, writable
+from simmpp.commands.terminal import output
 from simmpp.common.units import counted, format_bytes
-
-if TYPE_CHECKING:
-    from rich.table import Table
-
-    from simmpp.scene.scene import Scene
+from simmpp.scene.describe import describe, object_table
+from simmpp.scene.load import load_scene
+from simmpp.scene.nff import write_nff
+from simmpp.scene.scene import Scene
+from simmpp.workload.picture import Picture
 
 PREVIEW_RESOLUTION = 512
 OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10
 
 
-@click.command("scene")
+@click.command(
+    "scene",
+    epilog=examples(
+        "simmpp scene mountain:4 --preview mountain4.png",
+        "simmpp scene mountain:4 --nff mountain4.nff",
+    ),
+)
 @click.argument("spec")
 @click.option("--nff", "nff_path", type=NamedPath(), help="Write the scene as NFF.")
 @click.option("--preview", type=NamedPath(), help="Write a picture of it as PNG.")
@@ -32,10 +40,6 @@ def scene_command(
     SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size) or a file: NFF, or a
     mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
     """
-    from simmpp.commands.options import writable
-    from simmpp.scene.load import load_scene
-    from simmpp.scene.nff import write_nff
-
     writable(nff_path, "--nff", ".nff")
     writable(preview, "--preview", ".png")
     scene = load_scene(spec)
@@ -48,9 +52,6 @@ def scene_command(
 
 def _list(scene: Scene, most_objects: int | None) -> None:
     """Print counts, camera, lights, materials and objects; the first ones of a long list."""
-    from simmpp.commands.terminal import output
-    from simmpp.scene.describe import describe, object_table
-
     facts = describe(scene)
     console = output()
     console.print("\n".join(_facts(facts)), soft_wrap=True)
@@ -90,8 +91,6 @@ def _vector(vector: list[float]) -> str:
 
 def _table(rows: list[dict[Any, Any]], most: int | None) -> Table:
     """Rows as a table; beyond ``most`` only their number."""
-    from rich.table import Table
-
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for column in rows[0] if rows else ():
         table.add_column(str(column), no_wrap=True)
@@ -112,8 +111,8 @@ def _cell(value: object) -> str:
 
 def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
+    # Only --preview traces, which needs numba.
     from simmpp.commands.tracing import traced
-    from simmpp.workload.picture import Picture
     from simmpp.workload.trace.shading import render, save_png
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)

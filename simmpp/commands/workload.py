@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
+import numpy as np
 
-from simmpp.commands.options import NamedPath, set_option
-
-if TYPE_CHECKING:
-    from simmpp.workload.workload import Workload
+from simmpp.commands.options import NamedPath, examples, set_option, writable
+from simmpp.commands.terminal import output, table
+from simmpp.commands.tracing import workload
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import format_bytes
+from simmpp.config.config import config_from_mapping, load_config
+from simmpp.workload.describe import generations, object_uses, rays_by_kind
+from simmpp.workload.exchange.exchange import SUFFIXES, export_workload, is_workload
+from simmpp.workload.workload import Workload
 
 OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 
 
-@click.command("workload")
+@click.command(
+    "workload",
+    epilog=examples(
+        "simmpp workload mountain:4 --export mountain4.parquet",
+        "simmpp workload configs/quick.yaml --set picture.resolution=32",
+    ),
+)
 @click.argument("spec")
 @click.option("--export", type=NamedPath(), help="Write it as .parquet or .npz.")
 @set_option("Set a dotted key of the configuration, such as picture.resolution=128; repeatable.")
@@ -23,18 +34,12 @@ OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 def workload_command(
     spec: str, export: Path | None, overrides: tuple[str, ...], all_objects: bool
 ) -> None:
-    """List the rays of a picture: by kind, their tests, how much each object is used.
+    """List the rays of a picture, and which objects they need.
 
     SPEC is a scene as `simmpp scene` takes it, a workload file (.parquet or .npz), or a
     configuration (.yaml). --export writes rays and objects as tables that other tools can read
     and `scene: {workload: FILE}` reads back.
     """
-    from simmpp.commands.options import writable
-    from simmpp.commands.tracing import workload
-    from simmpp.common.errors import ConfigError
-    from simmpp.config.config import config_from_mapping, load_config
-    from simmpp.workload.exchange.exchange import SUFFIXES, export_workload, is_workload
-
     writable(export, "--export")
     if export and not is_workload(export.name):
         expected = f"expected a file {' or '.join(SUFFIXES)}"
@@ -43,18 +48,13 @@ def workload_command(
         config = load_config(spec, overrides)
     else:
         config = config_from_mapping({"scene": spec}, overrides)
-    chosen = workload(config)
+    rays = workload(config)
     if export:
-        export_workload(chosen, export)
-    _list(chosen, None if all_objects else OBJECTS_SHOWN)
+        export_workload(rays, export)
+    _list(rays, None if all_objects else OBJECTS_SHOWN)
 
 
 def _list(workload: Workload, most_objects: int | None) -> None:
-    import numpy as np
-
-    from simmpp.commands.terminal import output, table
-    from simmpp.common.units import format_bytes
-    from simmpp.workload.describe import generations, object_uses, rays_by_kind
 
     console = output()
     rows, columns = workload.picture

@@ -126,11 +126,14 @@ def _closure(module: str) -> set[str]:
     return closure
 
 
-def _imports(source: str) -> Iterator[str]:
+@cache
+def _imports(source: str) -> frozenset[str]:
     """Modules of this package that a source imports, wherever in it: functions import, too.
 
-    What only type checkers read is left out.
+    What only type checkers read is left out. Kept, as parsing takes milliseconds and every compiled
+    function asks for the digest of its module.
     """
+    modules: set[str] = set()
     pending: list[ast.AST] = [ast.parse(source)]
     while pending:
         node = pending.pop()
@@ -138,10 +141,11 @@ def _imports(source: str) -> Iterator[str]:
             continue
         pending.extend(ast.iter_child_nodes(node))
         if isinstance(node, ast.Import):
-            yield from filter(_is_ours, (alias.name for alias in node.names))
+            modules.update(filter(_is_ours, (alias.name for alias in node.names)))
         elif isinstance(node, ast.ImportFrom) and _is_ours(node.module or ""):
             names = [f"{node.module}.{alias.name}" for alias in node.names]
-            yield from {name if _file(name) else str(node.module) for name in names}
+            modules.update(name if _file(name) else str(node.module) for name in names)
+    return frozenset(modules)
 
 
 def _is_ours(module: str) -> bool:

@@ -18,8 +18,6 @@ from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
 
-pytestmark = pytest.mark.browser
-
 HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
 POLICIES = ("object", "ray", "concurrent", "replicated", HOSTILE)
 AXES: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""The commands as a user meets them: output, files, exit codes, one line for every mistake."""
+"""The commands as a user meets them: output, files, exit codes."""
 
 import csv
 import dataclasses
@@ -10,16 +10,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from calls import begin_in, simmpp
 
-from simmpp.cli import main
 from simmpp.commands.options import window_of
-from simmpp.common.compiled import cache_folder
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.methods.columns import COLUMNS
-
-COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
-"""Compiled code is shared with the other tests; workloads are not."""
 
 CONFIG = """
 scene: tetra:2
@@ -32,23 +27,8 @@ policy: [ray, concurrent]
 
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("SIMMPP_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("NUMBA_CACHE_DIR", COMPILED)
+    begin_in(tmp_path, monkeypatch)
     Path("c.yaml").write_text(CONFIG)
-
-
-def simmpp(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
-
-
-def refused(*arguments: str) -> str:
-    """The one line on the error output of a command that exits with 2."""
-    done = simmpp(*arguments)
-    assert done.exit_code == 2
-    assert done.stdout == ""
-    (line,) = done.stderr.splitlines()
-    return line
 
 
 def test_run_prints_every_policy_with_reference_and_ceiling() -> None:
@@ -147,75 +127,6 @@ def test_machine_prints_sources() -> None:
     assert "ESTIMATE, range" in done.stdout
 
 
-def test_mistakes() -> None:
-    Path("bad.yaml").write_text("scene: tetra:2\nprocessors: 0\n")
-    Path("bad.nff").write_text("v\nfrom x\n")
-    expected = "expected an integer from 1 to 65536"
-    assert (
-        refused("run", "bad.yaml") == f"simmpp: error: bad.yaml:2: processors: value 0: {expected}"
-    )
-    assert refused("run", "c.yaml", "--set", "processors=0") == (
-        f"simmpp: error: --set processors: value 0: {expected}"
-    )
-    assert refused("run", "none.yaml").startswith("simmpp: error: none.yaml: can't read the file")
-    assert refused("run", "c.yaml", "--engine", "x").startswith(
-        "simmpp: error: --set engine: value"
-    )
-    assert refused("run", "c.yaml", "--set", "method=analytical").startswith(
-        "simmpp: error: --set method: value 'analytical': expected simulate here"
-    )
-    assert refused("run", "c.yaml", "--set", "scene=bad.nff").startswith(
-        "simmpp: error: bad.nff:2:"
-    )
-    assert refused("run", "c.yaml", "--picture", "no/p.png").startswith("simmpp: error: --picture:")
-    assert refused("run", "c.yaml", "--out", "c.yaml").startswith("simmpp: error: --out:")
-    slow = (
-        "--set",
-        "machine.test=10 s",
-        "--set",
-        "picture.resolution=700",
-        "--set",
-        "processors=1",
-    )
-    assert refused("run", "c.yaml", *slow, "--set", "machine.ray=10 s").startswith(
-        "simmpp: error: the simulated time exceeds the clock's"
-    )
-    assert refused("run", "c.yaml", "--out", "") == (
-        "simmpp: error: --out: value '': expected the name of a file or folder"
-    )
-    assert refused("run", "").startswith("simmpp: error: CONFIG: value ''")
-    assert refused("run", "c.yaml", "--picture", "").startswith(
-        "simmpp: error: --picture: value ''"
-    )
-    assert refused("run", "c.yaml", "--picture", "x.jpg") == (
-        "simmpp: error: --picture: value 'x.jpg': expected a file .png"
-    )
-    assert refused("scene", "tetra:1", "--preview", "q.jpg").endswith("expected a file .png")
-    assert refused("scene", "tetra:1", "--nff", "q.txt").endswith("expected a file .nff")
-    assert refused("model", "c.yaml", "--imbalance", "nan") == (
-        "simmpp: error: --imbalance: value 'nan': expected a finite number"
-    )
-    for endless in ("nan", "inf"):
-        assert refused("sweep", "c.yaml", "--timeout", endless) == (
-            f"simmpp: error: --timeout: value {endless!r}: expected a finite number"
-        )
-        assert refused("model", "c.yaml", "--ratio", f"test={endless}").startswith(
-            f"simmpp: error: --ratio: value 'test={endless}': expected NAME=FACTOR"
-        )
-    assert refused("scene", "tetra:0").startswith("simmpp: error: ")
-    assert refused("scene", "none.nff").startswith("simmpp: error: none.nff: ")
-    assert refused("machine", "cm5").startswith("simmpp: error: value 'cm5': expected a preset")
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
-@pytest.mark.parametrize(("command", "name"), [("run", "p.yaml"), ("scene", "p.nff")])
-def test_a_named_pipe_is_refused(command: str, name: str) -> None:
-    os.mkfifo(name)
-    assert refused(command, name) == (
-        f"simmpp: error: {name}: can't read the file: expected a regular file"
-    )
-
-
 def test_run_says_that_it_does_not_sweep() -> None:
     done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
     assert done.exit_code == 0, done.output
@@ -287,36 +198,6 @@ def test_an_interrupted_run_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) 
     assert [line.split(",")[4] for line in lines] == ["policy", "object", "ray"]
 
 
-def test_help_imports_nothing_heavy() -> None:
-    code = (
-        "import sys; from simmpp.cli import main\n"
-        "try: main(['--help'])\n"
-        "except SystemExit: pass\n"
-        "print([m for m in ('numpy', 'numba', 'pydantic', 'pint', 'embreex') if m in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
-
-
-def test_version() -> None:
-    assert simmpp("--version").stdout.startswith("simmpp, version ")
-
-
-@pytest.mark.parametrize(
-    ("options", "problem"),
-    [
-        (["--timeline", "t.txt"], "--timeline: value 't.txt': expected a file .json, .json.gz or"),
-        (["--timeline-window", "0 ms:5 ms"], "--timeline-window: expected --timeline FILE beside"),
-        (["--timeline", "t.json", "--timeline-window", "5 ms"], "value '5 ms': expected START:END"),
-        (["--timeline", "t.json", "--timeline-window", "2 ms:1 ms"], "START before END"),
-        (["--timeline", "t.json", "--timeline-window", "2:3"], "--timeline-window: value '2': exp"),
-        (["--timeline", "no/t.json"], "expected a file in an existing folder"),
-    ],
-)
-def test_a_timeline_that_cannot_be(options: list[str], problem: str) -> None:
-    assert problem in refused("run", "c.yaml", *options)
-
-
 def test_run_writes_a_timeline_of_every_policy() -> None:
     assert simmpp("run", "c.yaml", "--timeline", "t.json").exit_code == 0
     events = json.loads(Path("t.json").read_text())["traceEvents"]
@@ -344,4 +225,3 @@ def test_run_draws_figures_of_every_policy() -> None:
             assert Path(f"f/{policy}-{name}.png").read_bytes().startswith(b"\x89PNG")
             assert "</svg>" in Path(f"f/{policy}-{name}.svg").read_text()
     assert len(list(Path("f").iterdir())) == 2 * 2 * len(names)
-    assert "at most 2048 processors" in refused(*command, "--set", "processors=4096")

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import csv
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from calls import begin_in, refused, simmpp
 
-from simmpp.cli import main
-from simmpp.common.compiled import cache_folder
-
-COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 REST = """
 processors: 4
 memory: {fraction: 0.3}
@@ -26,25 +21,12 @@ OWN = "scene: {workload: rays.parquet}\n" + REST
 
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("SIMMPP_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("NUMBA_CACHE_DIR", COMPILED)
+    begin_in(tmp_path, monkeypatch)
     Path("d").mkdir()
     Path("d/scene.yaml").write_text(SCENE)
     Path("d/own.yaml").write_text(OWN)
     done = simmpp("workload", "d/scene.yaml", "--export", "d/rays.parquet")
     assert done.exit_code == 0, done.output
-
-
-def simmpp(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
-
-
-def refused(*arguments: str) -> str:
-    done = simmpp(*arguments)
-    assert done.exit_code == 2, done.output
-    (line,) = done.stderr.splitlines()
-    return line.removeprefix("simmpp: error: ")
 
 
 def rows(path: str) -> list[dict[str, str]]:
@@ -115,15 +97,12 @@ def test_messages_that_outlast_the_clock_are_refused() -> None:
     assert simmpp("run", "d/own.yaml", *slow[:2], *few).exit_code == 0
 
 
-def test_mistakes() -> None:
-    assert refused("workload", "d/rays.parquet", "--export", "x.csv").startswith("--export: value")
-    assert refused("workload", "none.npz") == "none.npz: there is no such file"
-    assert refused("workload", "tetra:2", "--set", "processors=0").startswith("--set processors")
+def test_what_is_no_workload() -> None:
     Path("d/rays.objects.parquet").unlink()
-    assert "expected the table of objects beside it" in refused("run", "d/own.yaml")
+    beside = "expected the table of objects beside it, rays.objects.parquet"
+    assert refused("run", "d/own.yaml") == f"d/rays.parquet: {beside}"
     Path("d/own.yaml").write_text("scene: {workload: a.npz, size: 3}\n")
     assert refused("run", "d/own.yaml") == "d/own.yaml:1: scene: size goes with spd only"
     Path("d/own.yaml").write_text("scene: {workload: a.npz, nff: b.nff}\n")
-    assert "expected one of spd, nff, mesh, workload, got nff and workload" in refused(
-        "run", "d/own.yaml"
-    )
+    one = "expected one of spd, nff, mesh, workload, got nff and workload"
+    assert refused("run", "d/own.yaml") == f"d/own.yaml:1: scene: {one}"

@@ -22,7 +22,7 @@ BEST_S = 2
 """Seconds between two looks for the best policy."""
 
 
-class Progressing(Watcher):
+class Count(Watcher):
     """Counts the simulations of a sweep."""
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
@@ -36,47 +36,47 @@ class Progressing(Watcher):
             notice(f"{self.before} of {self.total} simulations are there from before")
 
     def asked(self, tasks: int) -> None:
-        """There is more to count."""
+        """Count what an adaptive sweep adds while it runs, too."""
         self.total += tasks
 
     def simulated(self, outcome: Outcome) -> None:
-        """Count one."""
+        """Count a simulation, and whether it failed."""
         self.done += 1
         self.failed += bool(outcome.error)
 
     def notice(self, text: str) -> None:
-        """Say it."""
+        """Show what the sweep has to say, such as a workload that was not in the cache."""
         notice(text)
 
     def more(self) -> str:
         """What failed, and which policy is the fastest so far."""
         best = best_policy(self._plan.rows(self._finished), self._plan.further)
-        told = f"best so far: {best[0]} (time profit {best[1]:.2f})" if best else ""
+        fastest = f"best so far: {best[0]} (time profit {best[1]:.2f})" if best else ""
         failed = f"{self.failed} failed" if self.failed else ""
-        return ", ".join(filter(None, (failed, told)))
+        return ", ".join(filter(None, (failed, fastest)))
 
 
-class Lines(Progressing):
+class Lines(Count):
     """A line whenever another tenth of the simulations is done, for files and pipes."""
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
-        """Begin."""
+        """Begin the clock that the time left is worked out by."""
         super().planned(plan, finished)
-        self._began_s, self._told = time.monotonic(), self.before
+        self._began_s, self._last_line = time.monotonic(), self.before
 
     def simulated(self, outcome: Outcome) -> None:
         """A line if that makes another tenth."""
         super().simulated(outcome)
-        if LINES * (self.done - self._told) < self.total and self.done < self.total:
+        if LINES * (self.done - self._last_line) < self.total and self.done < self.total:
             return
-        self._told = self.done
+        self._last_line = self.done
         per_task_s = (time.monotonic() - self._began_s) / (self.done - self.before)
         left_s = per_task_s * (self.total - self.done)
         parts = (f"{self.done} of {self.total}", f"about {left_s:.0f} s left", self.more())
         notice(", ".join(filter(None, parts)))
 
 
-class Bars(Progressing):
+class Bars(Count):
     """A bar for tracing and one for the simulations."""
 
     def __init__(self, bars: Progress) -> None:
