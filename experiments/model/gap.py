@@ -25,9 +25,9 @@ from simmpp.model.synchronous import DATAFLOWS, Dataflow, synchronous
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.scene.load import load_scene
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

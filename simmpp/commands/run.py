@@ -94,10 +94,11 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     from simmpp.commands.tracing import workload
     from simmpp.run.point import make_point, refuse_models
     from simmpp.run.summary import summary
+    from simmpp.workload.sources import scene_of
 
     refuse_models(config)
     if looks.picture or verify:
-        _require_scene(config, "--picture" if looks.picture else "--verify")
+        scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config))
     if looks.picture:
         _write_picture(point, looks.picture)
@@ -111,14 +112,6 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
-
-
-def _require_scene(config: Config, option: str) -> None:
-    from simmpp.common.errors import ConfigError
-
-    if config.settings.scene.workload is not None:
-        problem = "expected a scene to trace; a workload file has rays, but no geometry"
-        raise ConfigError(problem, where=option)
 
 
 def _simulate(
@@ -160,10 +153,10 @@ def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    from simmpp.scene.load import load_scene
+    from simmpp.workload.sources import scene_of
     from simmpp.workload.trace.shading import render, save_png
 
-    scene = load_scene(point.config.scene_spec)
+    scene = scene_of(point.config.ray_source, "--picture")()
     save_png(render(scene, point.config.picture, point.workload), path)
 
 
@@ -171,10 +164,10 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
     import numpy as np
 
-    from simmpp.scene.load import load_scene
+    from simmpp.workload.sources import scene_of
     from simmpp.workload.trace.verify import verify
 
-    scene, failed = load_scene(point.config.scene_spec), False
+    scene, failed = scene_of(point.config.ray_source, "--verify")(), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
         rays, objects = run.result.tested_rays, run.result.tested_objects

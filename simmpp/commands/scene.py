@@ -33,8 +33,8 @@ def scene_command(
     mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
     """
     from simmpp.commands.options import writable
-    from simmpp.scene.load import load_scene
     from simmpp.scene.nff import write_nff
+    from simmpp.workload.sources import load_scene
 
     writable(nff_path, "--nff", ".nff")
     writable(preview, "--preview", ".png")

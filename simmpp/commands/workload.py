@@ -33,7 +33,8 @@ def workload_command(
     from simmpp.commands.tracing import workload
     from simmpp.common.errors import ConfigError
     from simmpp.config.config import config_from_mapping, load_config
-    from simmpp.workload.exchange.exchange import SUFFIXES, export_workload, is_workload
+    from simmpp.workload.exchange.columns import SUFFIXES, is_workload
+    from simmpp.workload.exchange.exchange import export_workload
 
     writable(export, "--export")
     if export and not is_workload(export.name):

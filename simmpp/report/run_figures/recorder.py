@@ -11,6 +11,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.run_figures.data import motion_of
 from simmpp.run.point import Point, PolicyRun
+from simmpp.workload.trace.shading import render
 
 MOST_PROCESSORS = 2048
 
@@ -40,9 +41,5 @@ class FiguresRecorder:
 
 def _picture(point: Point) -> NDArray[np.uint8] | None:
     """What was rendered, if there is a scene and not only its rays."""
-    if point.config.settings.scene.workload is not None:
-        return None
-    from simmpp.scene.load import load_scene
-    from simmpp.workload.trace.shading import render
-
-    return render(load_scene(point.config.scene_spec), point.config.picture, point.workload)
+    load_scene = point.config.ray_source.scene
+    return load_scene and render(load_scene(), point.config.picture, point.workload)

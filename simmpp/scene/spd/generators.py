@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from simmpp.common.errors import ConfigError
+from simmpp.scene.nff import read_nff
+from simmpp.scene.scene import Scene
 from simmpp.scene.spd import balls, gears, jacks, lattice, mountain, rings, tetra, tree
 
 MAX_OBJECTS = 1_000_000
@@ -95,6 +97,13 @@ def nff(name: str, size: int | None = None) -> str:
     chosen = generator.default_size if size is None else size
     generator.check(chosen)
     return generator.nff(chosen)
+
+
+def load_spd(name: str, size: int | None = None) -> Scene:
+    """The scene of that text, read as a file would be: both ways in are one scene."""
+    generator = find_generator(name)
+    label = f"{generator.name}:{generator.default_size if size is None else size}"
+    return read_nff(nff(name, size), name=label, where=label)
 
 
 def known_names() -> list[str]:

@@ -13,11 +13,17 @@ from numpy.typing import NDArray
 from simmpp.common.errors import WorkloadError
 from simmpp.scene.nff_words import LARGEST
 
+SUFFIXES = (".parquet", ".npz")
 Column = NDArray[Any]
 MOST_ROWS = 2**31 - 2
 """Rays, and objects, are numbered by int32; offsets have one more entry."""
 LONGEST_WORD = 20
 """Characters kept of a word: enough to tell it in an error."""
+
+
+def is_workload(name: str) -> bool:
+    """Whether a file's name says that it holds the rays of a workload."""
+    return name.lower().endswith(SUFFIXES)
 
 
 @dataclass(frozen=True, eq=False)

@@ -62,11 +62,17 @@ from simmpp.common.errors import WorkloadError
 from simmpp.common.units import LONGEST_PS
 from simmpp.workload.check import check
 from simmpp.workload.exchange import npz
-from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.columns import (
+    MOST_ROWS,
+    SUFFIXES,
+    Column,
+    Table,
+    Tables,
+    is_workload,
+)
 from simmpp.workload.exchange.rays import rays_of
 from simmpp.workload.workload import MESH, OBJECT_KINDS, RAY_KINDS, Workload, frozen
 
-SUFFIXES = (".parquet", ".npz")
 OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
 MOST_BYTES = 2**40
 """A TiB for one object; the sum of all stays far from the end of int64."""
@@ -129,11 +135,6 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
         np.array(workload.picture),
     )
     _format(path).write(tables, path)
-
-
-def is_workload(name: str) -> bool:
-    """Whether a file's name says that it holds a workload."""
-    return name.lower().endswith(SUFFIXES)
 
 
 def _is_npz(path: Path) -> bool:

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays_of
 
 from simmpp.common.errors import WorkloadError
-from simmpp.scene.load import load_scene
 from simmpp.workload.cache.aligned_npz import ALIGNMENT, map_arrays, write_aligned
 from simmpp.workload.cache.store import load, open_workload, save
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.tracer import trace
 
 ARRAY = arrays_of.arrays(

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from simmpp.common.errors import WorkloadError
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Light
 from simmpp.workload.cache import store
 from simmpp.workload.cache.store import load, save, workload_for
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload
 
 SCENE = load_scene("mountain:2")
