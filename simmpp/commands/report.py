@@ -61,10 +61,10 @@ def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
     from simmpp.commands.options import folder
     from simmpp.commands.terminal import progress_bars
-    from simmpp.report.page.overlay import write_stills
-    from simmpp.report.page.report import FIGURES
+    from simmpp.report.page.beside import FIGURES_FOLDER
+    from simmpp.report.page.stills import write_stills
 
-    to = report.folder.path / FIGURES
+    to = report.folder.path / FIGURES_FOLDER
     folder(to, "DIR")
     plates = sum(len(figure.plates) for figure in report.figures)
     with progress_bars() as bars:

@@ -1,4 +1,4 @@
-"""Curves with the spread of their seeds, beside what the paper states: what a figure is made of."""
+"""Figures as data: panels of curves with the spread of their seeds, or of stacked bars."""
 
 from __future__ import annotations
 
@@ -70,6 +70,11 @@ class Scale:
     """Its ends, where panels are to be compared; chosen by the plot if not given."""
 
 
+PERCENT = 100
+ON_EACH_PE = Scale("objects resident on each PE (% of the scene)", ticks=(0, 20, 40, 60, 80, 100))
+"""The paper's axis of the fraction x."""
+
+
 @dataclass(frozen=True)
 class Panel:
     """One system of axes."""
@@ -99,6 +104,20 @@ class Panel:
         return not self.x.names and not any(curve.is_before for curve in self.curves)
 
 
+@dataclass(frozen=True)
+class Bars:
+    """One system of axes with stacked bars side by side: what a whole is made of."""
+
+    title: str
+    x: Scale
+    """Its names are those of the bars."""
+    y: Scale
+    parts: dict[str, list[float]]
+    """Heights of each part, one for each bar; the bottom part first."""
+    rows: list[int] = field(default_factory=list)
+    """Number of the point that a bar shows."""
+
+
 def curve(
     label: str,
     abscissas: Iterable[float],
@@ -118,20 +137,3 @@ def curve(
     }
     numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
     return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})
-
-
-# --- what a whole is made of, as stacked bars: shares of time, messages by kind ---
-
-
-@dataclass(frozen=True)
-class Bars:
-    """One system of axes with bars side by side."""
-
-    title: str
-    x: Scale
-    """Its names are those of the bars."""
-    y: Scale
-    parts: dict[str, list[float]]
-    """Heights of each part, one for each bar; the bottom part first."""
-    rows: list[int] = field(default_factory=list)
-    """Number of the point that a bar shows."""

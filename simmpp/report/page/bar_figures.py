@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from simmpp.plot.curves import Bars, Scale
+from simmpp.plot.curves import PERCENT, Bars, Scale
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
-STEMS = ACCOUNTS, MESSAGES = ("accounts-by-policy", "messages-by-kind")
-PERCENT, MARGIN = 100, 1.02
+STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")
+MARGIN = 1.02
 
 
 def bar_figures(points: Points) -> Iterator[Figure]:
     """Accounts and messages along the best axis, one panel for each policy."""
     yield _figure(
         points,
-        ACCOUNTS,
+        ACCOUNTS_STEM,
         "What PEs spend their time with",
         "shares of the time of all PEs, all seeds together",
         Scale("share of time (%)"),
@@ -27,7 +27,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
     )
     yield _figure(
         points,
-        MESSAGES,
+        MESSAGES_STEM,
         "Messages by kind",
         "means over seeds; the same scale for all policies",
         Scale("messages"),

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page import words
 
 
@@ -48,6 +50,18 @@ def _size(panel: Panel | Bars) -> int:
 def slug(text: str) -> str:
     """``"x = 5 %, 64 PEs"`` -> ``"x-5-64-pes"``: safe in any file system."""
     return re.sub("[^a-z0-9.]+", "-", text.lower()).strip("-.")[:80]
+
+
+def figure_data(figure: Figure) -> dict[str, Any]:
+    """A figure's plates as plotly draws them."""
+    plates = []
+    for panels in figure.plates.values():
+        title = next((t for t in (getattr(panel, "legend", "") for panel in panels) if t), "")
+        drawings = [drawn(panel) for panel in panels]
+        if len(drawings) == 1:
+            drawings[0]["title"] = ""  # the figure has it
+        plates.append({"title": title, "panels": drawings})
+    return {"plates": plates}
 
 
 def styles_of(rows: Iterable[Row]) -> dict[str, int]:

@@ -23,6 +23,7 @@ TITLES = {
     "speedup": ("Speed-up", "T(1 PE that holds everything) / T(policy)"),
     "efficiency": ("Efficiency", "speed-up / PEs"),
 }
+STEMS = tuple(measure.replace("_", "-") for measure in TITLES)
 PROFITS, OF_MACHINE = ("time_profit", "message_profit"), ("speedup", "efficiency")
 
 

@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from simmpp.plot.curves import Scale
-from simmpp.studies.nebel98.figures import ON_EACH_PE, PERCENT
+from simmpp.plot.curves import ON_EACH_PE, PERCENT, Scale
 
 DATAFLOWS = {
     "object": "object dataflow",
