@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from simmpp.common.errors import WorkloadError
 from simmpp.config.config import Config
-from simmpp.workload.cache.store import cached_path, open_workload, save
+from simmpp.workload.cache.store import cached_path, load, save
 from simmpp.workload.trace.tracer import Progress
 from simmpp.workload.workload import Workload
 
@@ -55,7 +55,7 @@ def shared_workload(config: Config, digest: str) -> Workload:
     path = cached_path(digest)
     if path.exists():
         with contextlib.suppress(WorkloadError):  # damaged: made again
-            workload = open_workload(path)
+            workload = load(path)
             if workload.digest == digest:
                 return workload
     workload = workload_of(config, notice=lambda text: None)

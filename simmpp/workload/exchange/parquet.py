@@ -1,4 +1,4 @@
-"""Rays and objects in two Parquet files side by side: the only import of pyarrow."""
+"""Rays and objects in two Parquet files side by side."""
 
 from __future__ import annotations
 
