@@ -13,7 +13,7 @@ LOG_MARGIN = 1.2
 
 
 class Spread(NamedTuple):
-    """A value over seeds."""
+    """A mean over seeds, and how far these, or its interval, reach."""
 
     mean: float
     low: float
@@ -31,7 +31,7 @@ class Curve:
     """By abscissa."""
     is_guide: bool = False
     """Not measured: drawn thin and grey."""
-    said: dict[float, str] = field(default_factory=dict)
+    notes: dict[float, str] = field(default_factory=dict)
     """What is written beside points, by abscissa."""
     floor: float = 0
     """Below this nothing can be told apart; drawn as a band under the curve."""
@@ -77,7 +77,7 @@ ON_EACH_PE = Scale("objects resident on each PE (% of the scene)", ticks=(0, 20,
 
 @dataclass(frozen=True)
 class Panel:
-    """One system of axes."""
+    """One system of axes with curves in it."""
 
     title: str
     x: Scale
@@ -95,7 +95,7 @@ class Panel:
         """Number of a measured curve's colour and marker: those of one label look the same."""
         if curve.style is not None:
             return curve.style
-        labels = dict.fromkeys(each.label for each in self.curves if not each.is_guide)
+        labels = dict.fromkeys(curve.label for curve in self.curves if not curve.is_guide)
         return list(labels).index(curve.label)
 
     @property

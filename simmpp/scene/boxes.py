@@ -46,7 +46,7 @@ def scene_box(objects: Sequence[SceneObject]) -> Floats:
 
 def _corners(obj: SceneObject) -> Floats:
     if isinstance(obj, MeshPart):
-        return obj.vertices[np.unique(obj.faces)]
+        return obj.vertices[np.unique(obj.faces)]  # one that no face uses is not to be hit
     if isinstance(obj, Polygon):
         return obj.vertices
     raise TypeError(f"no corners: {obj.kind}")
@@ -74,6 +74,7 @@ def _cone_boxes(objects: Sequence[SceneObject], origin: Floats) -> Floats:
     along = (apex - base) ** 2
     across = along[:, [1, 0, 0]] + along[:, [2, 2, 1]]
     length = along.sum(axis=1, keepdims=True)
+    # Without a length there is no axis to be across: the object is no thicker than its centre.
     reach = np.sqrt(across / np.where(length > 0, length, 1))
     base_reach, apex_reach = np.abs(base_radius) * reach, np.abs(apex_radius) * reach
     low = np.minimum(base - base_reach, apex - apex_reach)

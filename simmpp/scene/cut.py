@@ -55,6 +55,7 @@ def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
     order = np.lexsort(used.T)
     ordered = used[order]
     is_new = np.ones(len(order), dtype=np.bool_)
+    # Compared as numbers, not as bytes: 0.0 and -0.0 are one position.
     is_new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
     first = order[is_new]  # the sort is stable
     rank = np.empty_like(first)
@@ -68,6 +69,7 @@ def compacted(
     vertices: Floats, faces: Indices, parts: list[Indices]
 ) -> list[tuple[Floats, NDArray[np.int32]]]:
     """Of each part the vertices that its faces use, in order of index, and its faces into them."""
+    # One sort for all parts: a key is a vertex of one part, whichever others share it.
     sizes = np.array([len(rows) for rows in parts])
     part = np.repeat(np.arange(len(parts)), sizes)
     keys = part[:, None] * len(vertices) + faces[np.concatenate(parts)]
@@ -93,6 +95,7 @@ def _components(vertices: Floats, faces: Indices) -> list[Indices]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
+    # Two of its edges join a face's three vertices; the third would say it again.
     rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
     n = len(vertices)
     links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pandas as pd
 
 from simmpp.scene.boxes import boxes, scene_box
-from simmpp.scene.scene import Scene
+from simmpp.scene.scene import Scene, SceneObject
 from simmpp.scene.triangles import n_triangles
 from simmpp.scene.wire import bytes_on_the_wire
-
-KINDS = ("sphere", "cone", "polygon", "mesh")
 
 
 def describe(scene: Scene) -> dict[str, Any]:
@@ -30,7 +28,7 @@ def describe(scene: Scene) -> dict[str, Any]:
     return {
         "name": scene.name,
         "n_objects": len(objects),
-        "objects": {kind: kinds[kind] for kind in KINDS if kinds[kind]},
+        "objects": {of.kind: kinds[of.kind] for of in get_args(SceneObject) if kinds[of.kind]},
         "triangles": sum(map(n_triangles, objects)),
         "bytes": sum(map(bytes_on_the_wire, objects)),
         "box": {"low": low, "high": high},

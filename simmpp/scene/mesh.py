@@ -29,7 +29,7 @@ Z_UP_FORMATS = (".stl",)
 """Formats of construction, where z points up; in the others (glTF by its standard) y does."""
 BACKGROUND: Vector = (0.078, 0.361, 0.753)
 """That of most SPD scenes."""
-METALLIC, ROUGHNESS = 0.9, 0.3
+LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
 MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
 
@@ -113,11 +113,11 @@ def _read(file: Path) -> Any:
     try:
         refuse_special(file)
         with file.open("rb") as opened:
-            opened.read(1)
+            opened.read(1)  # a folder, or a file that may not be read, is told by its own error
         if kind not in mesh_formats():
-            known = ", ".join(sorted(mesh_formats()))
+            formats = ", ".join(sorted(mesh_formats()))
             raise SceneError(
-                f"neither NFF (.nff) nor a mesh that trimesh reads ({known})", where=str(file)
+                f"neither NFF (.nff) nor a mesh that trimesh reads ({formats})", where=str(file)
             )
         return trimesh.load_scene(str(file), process=False, **_options(kind))
     except SceneError:
@@ -161,7 +161,7 @@ def _material(mesh: Any) -> Material:
     roughness = getattr(surface, "roughnessFactor", None)
     metallic = getattr(surface, "metallicFactor", None)
     metallic = 1.0 if metallic is None else metallic  # glTF's default, as roughness 1 is
-    if roughness is not None and metallic >= METALLIC and roughness <= ROUGHNESS:
+    if roughness is not None and metallic >= LEAST_METALLIC and roughness <= MOST_ROUGHNESS:
         return Material(colour, kd=MIRROR, ks=MIRROR)
     return Material(colour)
 

@@ -88,8 +88,8 @@ class _Reader:
             keyword = words.word()
             read = self.read.get(keyword)
             if read is None:
-                known = ", ".join(self.read)
-                words.fail(f"expected a keyword ({known}), got {words.shown(keyword)}")
+                keywords = ", ".join(self.read)
+                words.fail(f"expected a keyword ({keywords}), got {words.shown(keyword)}")
             read()
         if self.camera is None:
             words.fail("no view: an NFF file needs one 'v'", at_end=True)
@@ -122,6 +122,7 @@ class _Reader:
             resolution = self._resolution(), self._resolution()
         towards = np.subtract(at, eye)
         sideways = np.linalg.norm(np.cross(towards, up))
+        # "not above" rather than "at most": what overflowed to NaN is no direction either.
         if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(up):
             self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
         self.camera = Camera(eye, at, up, angle, hither, resolution)

@@ -86,7 +86,7 @@ def _turn(a: Pair, b: Pair, c: Pair) -> float:
 
 
 def _is_convex(flat: list[Pair]) -> bool:
-    """All corners turn one way."""
+    """Whether all corners turn one way, straight ones aside."""
     turns = [_turn(flat[i - 2], flat[i - 1], flat[i]) for i in range(len(flat))]
     return min(turns) >= 0 or max(turns) <= 0
 

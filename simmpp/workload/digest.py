@@ -32,6 +32,7 @@ def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
     camera = scene.camera
     yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
+    # Without refraction no ray reads the index, so it must not tell two scenes apart.
     spawned = [(m.reflects, m.transmits, m.ior if m.transmits else 1.0) for m in scene.materials]
     for obj in scene.objects:
         yield obj.kind.encode()

@@ -108,8 +108,7 @@ def _load_mesh(file: str, objects: Any = "components") -> Scene:
         if name.lower() in known_names():
             raise ConfigError(f"no scene {name!r}: expected {name.lower()!r}")
         if not Path(file).suffix:
-            known = ", ".join(GENERATORS)
-            problem = f"no such file, and the generated scenes are {known}"
+            problem = f"no such file, and the generated scenes are {', '.join(GENERATORS)}"
             raise ConfigError(f"no scene {file!r}: {problem}")
     return load_mesh(file, objects=objects)
 
@@ -210,7 +209,8 @@ class SceneSettings(Strict):
     @property
     def source(self) -> RaySource:
         """Where the rays come from; file names are taken from the present folder."""
-        key, kind = next(each for each in SOURCES.items() if getattr(self, each[0]) is not None)
+        key = next(key for key in SOURCES if getattr(self, key) is not None)
+        kind = SOURCES[key]
         values = (getattr(self, name) for name in (key, *kind.further))
         return kind.source(*(value for value in values if value is not None))
 

@@ -47,17 +47,17 @@ def _figure(
     facet = None if along == "policy" else "policy"
     arrangement = arrange(points.profits, points.axes, along, facet)
     label = words.abscissa(along, list(arrangement.values))[0].label
-    found: dict[str, list[Bars]] = {}
+    bars_of: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
-        shown = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
-        most = max((sum(heights(n).values()) for ns in shown.values() for n in ns), default=1)
+        numbers_of = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
+        most = max((sum(heights(n).values()) for ns in numbers_of.values() for n in ns), default=1)
         for panel in sorted(panels, key=_colour_order(points)):
-            names = tuple(words.label(along, points.profits[n][along]) for n in shown[panel])
-            parts = _parts([heights(number) for number in shown[panel]])
+            names = tuple(words.label(along, points.profits[n][along]) for n in numbers_of[panel])
+            parts = _parts([heights(number) for number in numbers_of[panel]])
             scale = replace(y, limits=(0, most * MARGIN))
-            bars = Bars(panel, Scale(label, names=names), scale, parts, shown[panel])
-            found.setdefault(plate, []).append(bars)
-    return Figure(stem, title, note, found)
+            bars = Bars(panel, Scale(label, names=names), scale, parts, numbers_of[panel])
+            bars_of.setdefault(plate, []).append(bars)
+    return Figure(stem, title, note, bars_of)
 
 
 def _colour_order(points: Points) -> Callable[[str], int]:

@@ -64,7 +64,7 @@ def beside(folder: Path) -> list[Section]:
         sections.append(Section(topic, name, _pictures(folder, stems), tables))
     others = [p for p in _pictures(folder / FIGURES_FOLDER, ["*"]) if not p.name.startswith(OWN)]
     sections.append(Section("runs", "Pictures of single runs", others, []))
-    return [each for each in sections if each.pictures or each.tables]
+    return [section for section in sections if section.pictures or section.tables]
 
 
 def _matching(folder: Path, patterns: Iterable[str]) -> list[Path]:
@@ -74,11 +74,11 @@ def _matching(folder: Path, patterns: Iterable[str]) -> list[Path]:
 def _pictures(folder: Path, stems: Iterable[str]) -> list[EmbeddedPicture]:
     """Of each stem the smaller file, as text of the page."""
     patterns = [f"{stem}{suffix}" for stem in stems for suffix in PICTURES]
-    chosen: dict[str, Path] = {}
+    smallest: dict[str, Path] = {}
     for path in sorted(_matching(folder, patterns), key=lambda path: -path.stat().st_size):
         if path.stat().st_size <= MOST_PICTURE_BYTES:
-            chosen[path.stem] = path
-    return [_picture(chosen[stem]) for stem in sorted(chosen)]
+            smallest[path.stem] = path  # the largest come first, so the smallest stays
+    return [_picture(smallest[stem]) for stem in sorted(smallest)]
 
 
 def _picture(path: Path) -> EmbeddedPicture:

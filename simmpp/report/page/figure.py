@@ -15,7 +15,7 @@ from simmpp.report.page import words
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure of a report."""
+    """Plates of panels under one title; the page shows, and a file holds, one plate at once."""
 
     stem: str
     """Of its files, and its name in the page."""
@@ -36,6 +36,7 @@ class Figure:
         stems: dict[str, str] = {}
         for plate in self.plates:
             stem = "-".join(filter(None, (self.stem, slug(plate))))
+            # Plates such as "a b" and "a-b" have one slug; their files must not be one.
             stems[plate] = stem if stem not in stems.values() else f"{stem}-{len(stems)}"
         return stems
 
@@ -67,5 +68,5 @@ def figure_data(figure: Figure) -> dict[str, Any]:
 def styles_of(rows: Iterable[Row]) -> dict[str, int]:
     """A number for the colour of each policy, the same in all figures; the paper's come first."""
     titles = {row["policy"] for row in rows}
-    others = sorted(titles - words.DATAFLOWS.keys())
-    return {title: n for n, title in enumerate([*words.DATAFLOWS, *others]) if title in titles}
+    others = sorted(titles - words.PAPER_WORDS.keys())
+    return {title: n for n, title in enumerate([*words.PAPER_WORDS, *others]) if title in titles}

@@ -9,14 +9,14 @@ from simmpp.report.page import accuracy, bar_figures, paper, profit_figures
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
-from simmpp.report.page.profit_figures import Shown
+from simmpp.report.page.profit_figures import ProfitData
 
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
 
 
 @dataclass(frozen=True)
 class FigureGroup:
-    """A section of the page."""
+    """Figures under one heading of the page, and what makes them."""
 
     id: str
     name: str
@@ -32,7 +32,7 @@ GROUPS = (
     FigureGroup("paper", "The paper's figures", CLICKING, paper.STEMS, paper.paper_figures),
     FigureGroup(
         *("profits", "Profits", CLICKING, profit_figures.STEMS),
-        lambda _, points: profit_figures.profit_figures(Shown(points.profits, points.axes)),
+        lambda _, points: profit_figures.profit_figures(ProfitData(points.profits, points.axes)),
     ),
     FigureGroup(
         *("accounts", "Time and messages", "", bar_figures.STEMS),

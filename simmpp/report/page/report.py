@@ -33,7 +33,7 @@ LOOK_S = 1.0
 
 @dataclass(frozen=True)
 class Report:
-    """All that a page shows."""
+    """A folder's rows, the points they make, and the figures of these."""
 
     folder: Folder
     points: Points
@@ -42,7 +42,7 @@ class Report:
 
     @property
     def figures(self) -> list[Figure]:
-        """Of all groups."""
+        """Those of all groups, in the order of the page."""
         return [figure for figures in self.groups.values() for figure in figures]
 
 
@@ -75,7 +75,7 @@ def follow(path: Path) -> Iterator[Folder]:
         results = path / RESULTS
         written = results.stat().st_mtime_ns if results.is_file() else None
         if written is not None and written != seen:
-            seen = written
+            seen = written  # pages of a megabyte are not written again for nothing new
             yield _write(path, is_running=True)
         time.sleep(LOOK_S)
     yield _write(path, is_running=False)
@@ -158,5 +158,5 @@ def _data(report: Report, is_running: bool) -> dict[str, Any]:
 def _first(points: Points) -> int:
     """The point shown before one is chosen: the one that gains most."""
     gains = [row["time_profit"] for row in points.profits]
-    shown = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
-    return max(shown, key=lambda n: float(gains[n]), default=0)
+    finite = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
+    return max(finite, key=lambda n: float(gains[n]), default=0)

@@ -24,9 +24,10 @@ def rendered(template: str, values: Mapping[str, Any]) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    # NaN is no JSON: better an error here than a page whose scripts stop at it.
     environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
 
-    def asset(name: str) -> Markup:
+    def asset(name: str) -> Markup:  # our own styles and scripts, which escaping would break
         return Markup(environment.get_template(name).render())
 
     return environment.get_template(template).render(**values, asset=asset, plotly=Markup(script()))

@@ -13,7 +13,7 @@ from simmpp.report.run_figures.data import motion_of
 from simmpp.run.point import Point, PolicyRun
 from simmpp.workload.trace.shading import render
 
-MOST_PROCESSORS = 2048
+MOST_DRAWN_PES = 2048
 
 
 class FiguresRecorder:
@@ -22,15 +22,15 @@ class FiguresRecorder:
     needs_counters = True
 
     def __init__(self, folder: Path, point: Point) -> None:
-        if point.machine.processors > MOST_PROCESSORS:
-            problem = f"expected at most {MOST_PROCESSORS} processors: who sent to whom is a matrix"
+        if point.machine.processors > MOST_DRAWN_PES:
+            problem = f"expected at most {MOST_DRAWN_PES} processors: who sent to whom is a matrix"
             raise ConfigError(problem, where="--figures")
         self._folder = folder
         self._point = point
         self._picture = _picture(point)
 
     def begin(self, policy: PolicyParameters) -> None:
-        """No event log is needed."""
+        """Ask for no event log: the counters of a run are enough for its pictures."""
 
     def end(self, run: PolicyRun) -> None:
         """A run is over: draw it."""

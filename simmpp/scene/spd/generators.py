@@ -94,9 +94,9 @@ def find_generator(name: str) -> Generator:
 def nff(name: str, size: int | None = None) -> str:
     """NFF text of the scene ``name`` at ``size`` (default: the SPD's own size)."""
     generator = find_generator(name)
-    chosen = generator.default_size if size is None else size
-    generator.check(chosen)
-    return generator.nff(chosen)
+    size = generator.default_size if size is None else size
+    generator.check(size)
+    return generator.nff(size)
 
 
 def load_spd(name: str, size: int | None = None) -> Scene:
@@ -107,5 +107,5 @@ def load_spd(name: str, size: int | None = None) -> Scene:
 
 
 def known_names() -> list[str]:
-    """All names and aliases."""
+    """All names and aliases, as ``scene.spd`` takes them."""
     return [name for g in GENERATORS.values() for name in (g.name, *g.aliases)]

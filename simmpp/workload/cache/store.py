@@ -26,11 +26,11 @@ from simmpp.common.compiled import cache_folder
 from simmpp.common.errors import WorkloadError
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
-from simmpp.workload.check import DTYPES, check
+from simmpp.workload.check import check
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.tracer import Progress, trace
-from simmpp.workload.workload import Workload, frozen
+from simmpp.workload.workload import ARRAYS, Workload, frozen
 
 HEADER = b"workload"
 """Key of the metadata: name, digest, picture and, for each array, its shape and its CRC-32."""
@@ -70,7 +70,7 @@ def workload_for(
 
 def save(workload: Workload, path: str | os.PathLike[str]) -> None:
     """Write ``workload`` to ``path``, whole or not at all; OSError if it can't be written."""
-    arrays = {name: np.ascontiguousarray(getattr(workload, name)) for name in DTYPES}
+    arrays = {name: np.ascontiguousarray(getattr(workload, name)) for name in ARRAYS}
     header: dict[str, Any] = {
         "name": workload.name,
         "digest": workload.digest,
@@ -81,6 +81,7 @@ def save(workload: Workload, path: str | os.PathLike[str]) -> None:
     row = pa.RecordBatch.from_arrays(list(map(_cell, arrays.values())), list(arrays))
     schema = row.schema.with_metadata({HEADER: json.dumps(header)})
     target = Path(path)
+    # Workers may write the same workload at once: each its own file, and the last one stays.
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
     try:
         with os.fdopen(handle, "wb") as file, pa.ipc.new_file(file, schema) as writer:
@@ -105,11 +106,13 @@ def load(path: str | os.PathLike[str]) -> Workload:
     """
     try:
         with pa.memory_map(os.fspath(path)) as file:
-            row = pa.ipc.open_file(file).get_batch(0)
+            row = pa.ipc.open_file(file).get_batch(
+                0
+            )  # keeps the pages mapped when the file is shut
         row.validate(full=True)  # no array reaches beyond the file
         header = json.loads(row.schema.metadata[HEADER])
         shapes, checksum = header["shapes"], header.pop("checksum")
-        arrays = {name: _array(row[name]).reshape(shapes[name]) for name in DTYPES}
+        arrays = {name: _array(row[name]).reshape(shapes[name]) for name in ARRAYS}
         if checksum != _checksum(header, arrays):
             raise ValueError("damaged, its checksum does not fit")
         rows, columns = header["picture"]
