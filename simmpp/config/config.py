@@ -21,7 +21,8 @@ from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, R
 from simmpp.policy.parameters import LoadInfo, PolicyParameters
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture, Samples
-from simmpp.workload.sources import FILES, RaySource
+from simmpp.workload.ray_source import RaySource
+from simmpp.workload.sources import FILES
 
 
 @dataclass(frozen=True)

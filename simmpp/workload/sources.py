@@ -1,8 +1,8 @@
-"""Where rays come from: the key ``scene`` with its short forms, and a line for each kind of it.
+"""The key ``scene`` with its short forms, and a line for each kind of source that it names.
 
 Every door takes the same and says the same of a mistake: a configuration, ``simmpp scene SPEC``,
-``simmpp workload SPEC``, ``simmpp.load_scene(spec)``. A further kind of workload is a class like
-those below in a file of its own, its key in SceneSettings, and a line in SOURCES.
+``simmpp workload SPEC``, ``simmpp.load_scene(spec)``. A further kind of workload is a RaySource in
+a file of its own, its key in SceneSettings, and a line in SOURCES.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import Annotated, Any
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -26,76 +26,10 @@ from simmpp.scene.nff import load_nff
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd.generators import GENERATORS, find_generator, known_names, load_spd
 from simmpp.workload.exchange.columns import is_workload
-from simmpp.workload.picture import Picture
-
-if TYPE_CHECKING:
-    from simmpp.workload.trace.tracer import Progress
-    from simmpp.workload.workload import Workload
-
-# The tracer and the reader of tables are imported where they are called: with numba they take a
-# second, and neither a checked configuration nor the list of a scene's objects needs them.
+from simmpp.workload.ray_source import FileSource, RaySource, SceneSource
 
 SIZE = "an integer from 1 to what the scene can have"
 A_SCENE = "a name such as mountain:5, a file or a mapping"
-
-
-class RaySource(Protocol):
-    """What a configuration asks of the place where its rays come from."""
-
-    @property
-    def scene(self) -> Callable[[], Scene] | None:
-        """Makes the scene that is rendered; None where there are rays, but no geometry."""
-
-    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
-        """What the workload is called, and its digest, without tracing it."""
-
-    def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
-    ) -> Workload:
-        """The workload; ``notice`` is told of a cache that is of no use."""
-
-
-@dataclass(frozen=True)
-class SceneSource:
-    """Rays that are traced here, in a scene."""
-
-    scene: Callable[[], Scene]
-
-    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
-        """The scene's name; the digest of all that the tracer would read."""
-        from simmpp.workload.digest import digest_of
-
-        scene = self.scene()
-        return scene.name, digest_of(scene, picture)
-
-    def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
-    ) -> Workload:
-        """From the cache if it was traced before."""
-        from simmpp.workload.cache.store import workload_for
-
-        return workload_for(self.scene(), picture, progress=progress, notice=notice)
-
-
-@dataclass(frozen=True)
-class FileSource:
-    """Rays that another renderer has written to a file."""
-
-    file: str
-    scene: None = None
-
-    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
-        """The file's stem; the digest of what the file holds, which has to be read for it."""
-        workload = self.workload(picture, None, None)
-        return workload.name, workload.digest
-
-    def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
-    ) -> Workload:
-        """The file's; it says itself what its picture is."""
-        from simmpp.workload.exchange.exchange import import_workload
-
-        return import_workload(self.file)
 
 
 def _load_mesh(file: str, objects: Any = "components") -> Scene:
