@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from simmpp.placement.placement import Memory, PlacementRules
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.run.profit import profits
-    from simmpp.scene.load import load_scene
     from simmpp.studies.curve.estimate import estimate
     from simmpp.sweeps.sweep import run_sweep as sweep
     from simmpp.workload.exchange.exchange import export_workload, import_workload
     from simmpp.workload.picture import Picture
+    from simmpp.workload.sources import load_scene
     from simmpp.workload.trace.tracer import trace
 
 _HOME = {
@@ -40,7 +40,7 @@ _HOME = {
     "estimate": "simmpp.studies.curve.estimate:estimate",
     "export_workload": "simmpp.workload.exchange.exchange:export_workload",
     "import_workload": "simmpp.workload.exchange.exchange:import_workload",
-    "load_scene": "simmpp.scene.load:load_scene",
+    "load_scene": "simmpp.workload.sources:load_scene",
     "make_machine": "simmpp.machine.presets:machine",
     "place": "simmpp.placement.place:place",
     "profits": "simmpp.run.profit:profits",

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from simmpp.config.config import Config
 from simmpp.placement.residents import resident_count
-from simmpp.scene.load import load_scene
+from simmpp.workload.sources import load_scene
 
 AS_X = "memory.transient=as many as x"
 """Not a key: the transient memory of each point holds x N objects."""

@@ -41,9 +41,9 @@ from simmpp.machine.transfer import transfer_ps
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.scene.load import load_scene
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 
 sys.path.append(str(Path(__file__).parents[2] / "tests"))
 

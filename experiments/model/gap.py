@@ -23,10 +23,10 @@ from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.plot.curves import Curve, Panel, Scale, Spread
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.scene.load import load_scene
 from simmpp.studies.nebel98.figures import NAMES
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

@@ -27,9 +27,9 @@ from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.presets import machine
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.scene.load import load_scene
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload
 
 FETCHES_EXPONENT = 0.62

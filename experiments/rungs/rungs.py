@@ -197,8 +197,8 @@ def panel(rows: list[Row], measure: str) -> Panel:
         for row in own:
             if not is_full(row):
                 cost = float(row["cost"])
-                said = {cost: letters[row["rung"]]}
-                curves.append(Curve("_", {cost: error_of(row, measure)}, said=said, style=style))
+                notes = {cost: letters[row["rung"]]}
+                curves.append(Curve("_", {cost: error_of(row, measure)}, notes=notes, style=style))
     named = "; ".join(f"{letter} {rung}" for rung, letter in letters.items())
     return Panel(
         f"{MEASURES[measure]}; the line: 95 % of estimates are within 5 %",

@@ -20,10 +20,10 @@ from simmpp.machine.presets import machine
 from simmpp.placement.place import place, rotated
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.scene.load import load_scene
 from simmpp.studies.curve.estimate import node_fractions
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload, frozen
 
 FILE = Path(__file__).with_name("rungs-runs.csv")

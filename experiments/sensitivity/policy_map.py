@@ -32,10 +32,10 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.plot.matplotlib_panels import SETTINGS, save
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.scene.load import load_scene
 from simmpp.studies.nebel98.figures import NAMES
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 
 HERE = Path(__file__).parent
 SCENES = ("mountain:5", "tetra:5")

@@ -36,9 +36,9 @@ from SALib.sample import sobol
 from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
 from simmpp.plot.matplotlib_panels import save
-from simmpp.scene.load import load_scene
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.workload import Workload
 
 HERE = Path(__file__).parent

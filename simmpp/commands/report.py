@@ -8,9 +8,10 @@ import click
 
 from simmpp.commands.options import NamedPath, examples, folder
 from simmpp.commands.terminal import notice, progress_bars
+from simmpp.report.page.beside import FIGURES_FOLDER
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.overlay import write_stills
-from simmpp.report.page.report import FIGURES, PAGE, Report, follow, report_of, write_page
+from simmpp.report.page.report import PAGE, Report, follow, report_of, write_page
+from simmpp.report.page.stills import write_stills
 
 
 @click.command(
@@ -53,7 +54,7 @@ def _follow(folder_path: Path, page: Path) -> None:
 
 def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
-    to = report.folder.path / FIGURES
+    to = report.folder.path / FIGURES_FOLDER
     folder(to, "DIR")
     plates = sum(len(figure.plates) for figure in report.figures)
     with progress_bars() as bars:

@@ -22,13 +22,12 @@ from simmpp.commands.options import (
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.terminal import notice, output, progress_bars
 from simmpp.commands.tracing import workload
-from simmpp.common.errors import ConfigError
 from simmpp.config.config import Config, load_config
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record, write_record
 from simmpp.run.rows import row, write_rows
 from simmpp.run.summary import summary
-from simmpp.scene.load import load_scene
+from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
 from simmpp.workload.trace.verify import verify
 
@@ -108,7 +107,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     refuse_models(config)
     if looks.picture or verify:
-        _require_scene(config, "--picture" if looks.picture else "--verify")
+        scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config))
     if looks.picture:
         _write_picture(point, looks.picture)
@@ -122,12 +121,6 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
-
-
-def _require_scene(config: Config, option: str) -> None:
-    if config.settings.scene.workload is not None:
-        problem = "expected a scene to trace; a workload file has rays, but no geometry"
-        raise ConfigError(problem, where=option)
 
 
 def _simulate(
@@ -163,13 +156,13 @@ def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    scene = load_scene(point.config.scene_spec)
+    scene = scene_of(point.config.ray_source, "--picture")()
     save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    scene, failed = load_scene(point.config.scene_spec), False
+    scene, failed = scene_of(point.config.ray_source, "--verify")(), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
         rays, objects = run.result.tested_rays, run.result.tested_objects

@@ -12,10 +12,10 @@ from simmpp.commands.options import NamedPath, examples, writable
 from simmpp.commands.terminal import output
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
-from simmpp.scene.load import load_scene
 from simmpp.scene.nff import write_nff
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 
 PREVIEW_RESOLUTION = 512
 OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10

@@ -13,8 +13,9 @@ from simmpp.commands.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
 from simmpp.config.config import config_from_mapping, load_config
-from simmpp.workload.describe import generations, object_uses, rays_by_kind
-from simmpp.workload.exchange.exchange import SUFFIXES, export_workload, is_workload
+from simmpp.workload.describe import object_uses, rays_by_depth, rays_by_kind
+from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
+from simmpp.workload.exchange.exchange import export_workload
 from simmpp.workload.workload import Workload
 
 OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
@@ -42,7 +43,7 @@ def workload_command(
     """
     writable(export, "--export")
     if export and not is_workload(export.name):
-        expected = f"expected a file {' or '.join(SUFFIXES)}"
+        expected = f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}"
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
     if spec.lower().endswith((".yaml", ".yml")):
         config = load_config(spec, overrides)
@@ -60,7 +61,7 @@ def _list(workload: Workload, most_objects: int | None) -> None:
     rows, columns = workload.picture
     tested = len(np.unique(workload.itinerary_objects))
     size = format_bytes(int(workload.object_bytes.sum()))
-    depths = generations(workload)
+    depths = rays_by_depth(workload)
     deepest = f", ... to depth {len(depths)}" if len(depths) > DEPTHS_SHOWN else ""
     console.print(
         f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "

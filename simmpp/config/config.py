@@ -14,14 +14,15 @@ from simmpp.common.units import shown
 from simmpp.common.yamlfile import KeyPath, read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.overrides import Places, override, set_key
-from simmpp.config.scene import FILES
 from simmpp.config.settings import PolicySettings, Settings
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine, torus_shape
 from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
 from simmpp.policy.parameters import LoadInfo, PolicyParameters
-from simmpp.workload.exchange.exchange import is_workload
+from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture, Samples
+from simmpp.workload.ray_source import RaySource
+from simmpp.workload.sources import FILES
 
 
 @dataclass(frozen=True)
@@ -50,12 +51,13 @@ class Config:
 
     @property
     def scene_spec(self) -> dict[str, object]:
-        """What ``load_scene`` takes (or ``workload``), with file names that hold from anywhere."""
-        spec = self.settings.scene.model_dump(exclude_none=True)
-        for key in FILES:
-            if key in spec:
-                spec[key] = str(self.folder / spec[key])
-        return spec
+        """The key ``scene`` written out, with file names that hold from here."""
+        return self.settings.scene.within(self.folder).model_dump(exclude_none=True)
+
+    @property
+    def ray_source(self) -> RaySource:
+        """Where the rays come from."""
+        return self.settings.scene.within(self.folder).source
 
     @property
     def picture(self) -> Picture:

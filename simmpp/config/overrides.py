@@ -8,10 +8,10 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import Place, submodel, unknown
 from simmpp.common.yamlfile import KeyPath, parse_yaml
-from simmpp.config.scene import long_scene
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test
 from simmpp.policy.registry import DEFAULT_POLICY
+from simmpp.workload.sources import long_scene
 
 Places = dict[KeyPath, Place]
 """Where each key was set, by its path."""

@@ -22,13 +22,13 @@ from simmpp.common.strict import (
 )
 from simmpp.common.units import shown
 from simmpp.config import values
-from simmpp.config.scene import SceneSettings, long_scene
 from simmpp.engine.simulate import DEFAULT_ENGINE, ENGINES, READY_ORDERS
 from simmpp.machine.constants import MOST_PROCESSORS, Constants
 from simmpp.machine.presets import preset_names
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.registry import DEFAULT_POLICY, POLICIES
+from simmpp.workload.sources import SceneKey
 
 Processors = Annotated[int, *integer(1, MOST_PROCESSORS)]
 RayCount = Annotated[int, *integer(1, values.MOST_RAYS)]
@@ -171,7 +171,7 @@ class CheckSettings(Strict):
 class Settings(Strict):
     """A whole configuration."""
 
-    scene: Annotated[SceneSettings, parsed_by(long_scene)] = Field(description="what is rendered")
+    scene: SceneKey = Field(description="what is rendered")
     picture: PictureSettings = Field(default=PictureSettings(), description="rays that are traced")
     machine: MachineSettings = Field(default=MachineSettings(), description="what computes it")
     processors: Processors = Field(default=64, description="number of PEs, nb in the paper")
@@ -219,7 +219,7 @@ class Settings(Strict):
 
     @model_validator(mode="after")
     def _picture_is_traced(self) -> Settings:
-        if self.scene.workload is not None and "picture" in self.model_fields_set:
+        if self.scene.source.scene is None and "picture" in self.model_fields_set:
             raise mistake("picture goes with a scene that is traced, not with scene.workload")
         return self
 

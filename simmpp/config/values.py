@@ -15,30 +15,10 @@ from simmpp.config.axes import axes_of
 MOST_RAYS = 2**31 - 1
 """Rays are numbered by int32."""
 AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
-OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
 MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
 LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
-SIZE = "an integer from 1 to what the scene can have"
 SEEDS = f"a list of different integers from 0 to {MOST_SEED}, such as [0, 1, 2]"
 TOLERANCE = "none, or a share above 0% and below 100%, such as 2%"
-
-
-def size(value: object) -> int:
-    """Size of a scene; the scene's generator knows the largest."""
-    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30:
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {SIZE}")
-
-
-def objects(value: object) -> str | dict[str, int]:
-    """How a mesh is cut: nodes, components or ``{clusters: k}``."""
-    if value in ("nodes", "components"):
-        return str(value)
-    if isinstance(value, dict) and set(value) == {"clusters"}:
-        count = value["clusters"]
-        if isinstance(count, int) and not isinstance(count, bool) and count >= 1:
-            return {"clusters": count}
-    raise ConfigError(f"value {shown(value)}: expected {OBJECTS}")
 
 
 def min_load(value: object) -> Fraction | int:

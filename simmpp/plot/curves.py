@@ -1,4 +1,4 @@
-"""Curves with the spread of their seeds, beside what the paper states: what a figure is made of."""
+"""Figures as data: panels of curves with the spread of their seeds, or of stacked bars."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LOG_MARGIN = 1.2
 
 
 class Spread(NamedTuple):
-    """A value over seeds."""
+    """A mean over seeds, and how far these, or its interval, reach."""
 
     mean: float
     low: float
@@ -31,7 +31,7 @@ class Curve:
     """By abscissa."""
     is_guide: bool = False
     """Not measured: drawn thin and grey."""
-    said: dict[float, str] = field(default_factory=dict)
+    notes: dict[float, str] = field(default_factory=dict)
     """What is written beside points, by abscissa."""
     floor: float = 0
     """Below this nothing can be told apart; drawn as a band under the curve."""
@@ -70,9 +70,14 @@ class Scale:
     """Its ends, where panels are to be compared; chosen by the plot if not given."""
 
 
+PERCENT = 100
+ON_EACH_PE = Scale("objects resident on each PE (% of the scene)", ticks=(0, 20, 40, 60, 80, 100))
+"""The paper's axis of the fraction x."""
+
+
 @dataclass(frozen=True)
 class Panel:
-    """One system of axes."""
+    """One system of axes with curves in it."""
 
     title: str
     x: Scale
@@ -90,13 +95,27 @@ class Panel:
         """Number of a measured curve's colour and marker: those of one label look the same."""
         if curve.style is not None:
             return curve.style
-        labels = dict.fromkeys(each.label for each in self.curves if not each.is_guide)
+        labels = dict.fromkeys(curve.label for curve in self.curves if not curve.is_guide)
         return list(labels).index(curve.label)
 
     @property
     def has_bands(self) -> bool:
         """Spreads are drawn as bands: not between names, and not over what was before."""
         return not self.x.names and not any(curve.is_before for curve in self.curves)
+
+
+@dataclass(frozen=True)
+class Bars:
+    """One system of axes with stacked bars side by side: what a whole is made of."""
+
+    title: str
+    x: Scale
+    """Its names are those of the bars."""
+    y: Scale
+    parts: dict[str, list[float]]
+    """Heights of each part, one for each bar; the bottom part first."""
+    rows: list[int] = field(default_factory=list)
+    """Number of the point that a bar shows."""
 
 
 def curve(
@@ -118,20 +137,3 @@ def curve(
     }
     numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
     return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})
-
-
-# --- what a whole is made of, as stacked bars: shares of time, messages by kind ---
-
-
-@dataclass(frozen=True)
-class Bars:
-    """One system of axes with bars side by side."""
-
-    title: str
-    x: Scale
-    """Its names are those of the bars."""
-    y: Scale
-    parts: dict[str, list[float]]
-    """Heights of each part, one for each bar; the bottom part first."""
-    rows: list[int] = field(default_factory=list)
-    """Number of the point that a bar shows."""

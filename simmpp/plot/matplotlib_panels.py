@@ -30,7 +30,7 @@ STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "///
 FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
 FADE = 1.35
 """A band below a level is drawn down to that part of it: others lie deeper."""
-PARTS: tuple[dict[str, Any], ...] = (
+PART_STYLES: tuple[dict[str, Any], ...] = (
     {"facecolor": "#1f5f8b"},
     {"facecolor": "#e8963a", "hatch": "\\\\\\"},
     {"facecolor": "#d5dbe1"},
@@ -89,7 +89,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         axes.set_ylim(*panel.y.limits)
     elif not panel.y.is_log:
         axes.set_ylim(bottom=0)
-    if any(curve.said for curve in panel.curves):
+    if any(curve.notes for curve in panel.curves):
         axes.margins(y=0.14)  # room for what is written above the highest point
     axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
@@ -99,7 +99,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 
 
 def _draw_legend(axes: Axes, title: str) -> None:
-    """Each label once."""
+    """A legend with each label once, however many curves have it."""
     handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
     axes.legend(
         handles.values(),
@@ -115,7 +115,7 @@ def _draw_bars(axes: Axes, bars: Bars) -> None:
     """Parts on top of each other, one bar for each name."""
     places = range(len(bars.x.names))
     bottom = [0.0] * len(places)
-    for (part, heights), style in zip(bars.parts.items(), PARTS, strict=False):
+    for (part, heights), style in zip(bars.parts.items(), PART_STYLES, strict=False):
         axes.bar(places, heights, 0.85, bottom, label=part, edgecolor="white", lw=0.3, **style)
         bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
     axes.set_xticks(places, bars.x.names, fontsize=7)
@@ -154,7 +154,7 @@ def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -
     axes.plot(xs, means, label=curve.label, linewidth=1.4, markersize=4, **style)
     if curve.floor:
         axes.fill_between(xs, curve.floor / FADE, curve.floor, color=style["color"], **FLOOR)
-    for x, text in curve.said.items():
+    for x, text in curve.notes.items():
         place = (x, curve.points[x].mean)
         axes.annotate(text, place, (3, 3), textcoords="offset points", fontsize=6.5)
 

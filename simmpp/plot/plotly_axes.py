@@ -34,7 +34,7 @@ def _axis(scale: Scale) -> Drawn:
     }
     if ticks := scale.ticks or (_decades(*scale.limits) if scale.is_log and scale.limits else ()):
         texts = scale.names or [f"{tick:g}" for tick in ticks]
-        axis |= {"tickvals": list(ticks), "ticktext": [html.escape(each) for each in texts]}
+        axis |= {"tickvals": list(ticks), "ticktext": [html.escape(text) for text in texts]}
     if scale.ticks and scale.names:
         axis |= {"range": [-0.5, len(scale.names) - 0.5]}
     if scale.limits:
@@ -54,7 +54,7 @@ def limited(panel: Panel) -> Scale:
     spreads = [spread for curve in panel.curves for spread in curve.points.values()]
     if panel.y.limits or not panel.y.is_log or not spreads:
         return panel.y
-    low, high = min(each.low for each in spreads), max(each.high for each in spreads)
+    low, high = min(spread.low for spread in spreads), max(spread.high for spread in spreads)
     return replace(panel.y, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
 
 

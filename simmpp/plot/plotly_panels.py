@@ -17,7 +17,7 @@ SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross
 DASHES = ("solid", "dash", "dashdot", "longdash", "dot", "longdashdot", "solid")
 """Curves differ by markers and lines too, as in print."""
 COLOURS = len(SYMBOLS)
-PARTS = {
+PART_COLOURS = {
     "compute": 0,
     "communication": 1,
     "waiting": 2,
@@ -37,9 +37,9 @@ def script() -> str:
 
 
 def drawn(panel: Panel | Bars) -> Drawn:
-    """A panel's traces and layout."""
-    made = _curves(panel) if isinstance(panel, Panel) else _bars(panel)
-    return made | {"title": panel.title, "alt": described(panel)}
+    """A panel as plotly.js takes it, with its title, and a text for those who don't see it."""
+    drawing = _curves(panel) if isinstance(panel, Panel) else _bars(panel)
+    return drawing | {"title": panel.title, "alt": described(panel)}
 
 
 def described(panel: Panel | Bars) -> str:
@@ -56,8 +56,8 @@ def described(panel: Panel | Bars) -> str:
 
 
 def _span(values: Iterable[float]) -> str:
-    found = list(values)
-    return f"{min(found):.3g} to {max(found):.3g}" if found else "nothing"
+    numbers = list(values)
+    return f"{min(numbers):.3g} to {max(numbers):.3g}" if numbers else "nothing"
 
 
 def _curves(panel: Panel) -> Drawn:
@@ -67,12 +67,12 @@ def _curves(panel: Panel) -> Drawn:
             traces.append(_guide(curve))
             continue
         traces.append(_line(curve, panel.style_of(curve) % COLOURS, panel))
-    made = layout(panel.x, limited(panel))
-    made["shapes"] = [_stated(each) for each in panel.stated]
-    made["annotations"] = [_remark(each, panel) for each in panel.stated if each.label]
+    drawing = layout(panel.x, limited(panel))
+    drawing["shapes"] = [_stated(stated) for stated in panel.stated]
+    drawing["annotations"] = [_remark(stated, panel) for stated in panel.stated if stated.label]
     if panel.level is not None:
-        made["shapes"].append(_level(panel.level))
-    return {"data": traces, "layout": made}
+        drawing["shapes"].append(_level(panel.level))
+    return {"data": traces, "layout": drawing}
 
 
 def _guide(curve: Curve) -> Drawn:
@@ -100,17 +100,17 @@ def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
         "line": line,
         "marker": _markers(curve, xs, style),
         **(_ends(spreads) if panel.x.names else {}),
-        **(_said(curve, xs) if curve.said else {}),
+        **(_noted(curve, xs) if curve.notes else {}),
     }
 
 
-def _said(curve: Curve, xs: list[float]) -> Drawn:
-    """What is written beside points."""
-    said = [html.escape(curve.said.get(x, "")).replace("\n", "<br>") for x in xs]
+def _noted(curve: Curve, xs: list[float]) -> Drawn:
+    """The notes of a curve, to the upper right of their points."""
+    notes = [html.escape(curve.notes.get(x, "")).replace("\n", "<br>") for x in xs]
     font = {"size": 11, "color": "var(--muted)"}
     return {
         "mode": "lines+markers+text",
-        "text": said,
+        "text": notes,
         "textposition": "top right",
         "textfont": font,
     }
@@ -177,10 +177,10 @@ def _level(value: float) -> Drawn:
 
 
 def _bars(bars: Bars) -> Drawn:
-    made = layout(bars.x, bars.y) | {"barmode": "stack", "bargap": 0.15}
+    axes = layout(bars.x, bars.y) | {"barmode": "stack", "bargap": 0.15}
     names = [html.escape(name) for name in bars.x.names]
     places = list(range(len(names)))
-    made["xaxis"] |= {"tickvals": places, "ticktext": names}
+    axes["xaxis"] |= {"tickvals": places, "ticktext": names}
     traces = [
         {
             "type": "bar",
@@ -189,8 +189,8 @@ def _bars(bars: Bars) -> Drawn:
             "x": places,
             "y": _short(heights),
             "customdata": bars.rows,
-            "marker": {"color": f"var(--p{PARTS[part]})", "line": {"width": 0}},
+            "marker": {"color": f"var(--p{PART_COLOURS[part]})", "line": {"width": 0}},
         }
         for part, heights in bars.parts.items()
     ]
-    return {"data": traces, "layout": made}
+    return {"data": traces, "layout": axes}

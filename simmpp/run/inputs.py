@@ -1,4 +1,4 @@
-"""The workload of a configuration: traced from a scene, or another renderer's."""
+"""The workload of a configuration, and where processes that share it find it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,7 @@ from collections.abc import Callable
 
 from simmpp.common.errors import WorkloadError
 from simmpp.config.config import Config
-from simmpp.scene.load import load_scene
-from simmpp.workload.cache.store import cached_path, open_workload, save, workload_for
-from simmpp.workload.digest import digest_of
-from simmpp.workload.exchange.exchange import import_workload
+from simmpp.workload.cache.store import cached_path, load, save
 from simmpp.workload.trace.tracer import Progress
 from simmpp.workload.workload import Workload
 
@@ -25,21 +22,7 @@ def workload_of(
 
     Raises ConfigError, SceneError or WorkloadError for a scene or a file that is none.
     """
-    file = config.settings.scene.workload
-    if file is not None:
-        return import_workload(config.folder / file)
-    scene = load_scene(config.scene_spec)
-    return workload_for(scene, config.picture, progress=progress, notice=notice)
-
-
-def name_and_digest(config: Config) -> tuple[str, str]:
-    """What the workload of a configuration is called, and its digest, without tracing it."""
-    file = config.settings.scene.workload
-    if file is not None:
-        workload = import_workload(config.folder / file)
-        return workload.name, workload.digest
-    scene = load_scene(config.scene_spec)
-    return scene.name, digest_of(scene, config.picture)
+    return config.ray_source.workload(config.picture, progress, notice)
 
 
 def cache_workload(
@@ -57,8 +40,8 @@ def cache_workload(
     if path.exists():
         return None
     workload = workload_of(config, progress=progress, notice=notice)
-    if config.settings.scene.workload is not None:
-        with contextlib.suppress(OSError):  # then each worker reads the tables themselves
+    if not path.exists():  # nothing traced, or the cache can't be written
+        with contextlib.suppress(OSError):  # then each worker makes or reads it itself
             path.parent.mkdir(parents=True, exist_ok=True)
             save(workload, path)
     return workload
@@ -72,7 +55,7 @@ def shared_workload(config: Config, digest: str) -> Workload:
     path = cached_path(digest)
     if path.exists():
         with contextlib.suppress(WorkloadError):  # damaged: made again
-            workload = open_workload(path)
+            workload = load(path)
             if workload.digest == digest:
                 return workload
     workload = workload_of(config, notice=lambda text: None)

@@ -21,8 +21,8 @@ def check_scene(scene: Scene) -> None:
     for number, light in enumerate(scene.lights):
         _require(_problem_of_numbers(light.colour), f"the colour of light {number}", scene.name)
     _require(_problem_of_numbers(scene.background), "the background", scene.name)
-    for number, thing in enumerate(scene.objects):
-        problem = _problem_of_object(thing, len(scene.materials))
+    for number, obj in enumerate(scene.objects):
+        problem = _problem_of_object(obj, len(scene.materials))
         _require(problem, f"object {number}", scene.name)
 
 
@@ -47,16 +47,16 @@ def _problem_of_numbers(numbers: Iterable[float]) -> str:
     return f"has the number {wrong[0]:g}, expected 0 or a finite number above" if wrong else ""
 
 
-def _problem_of_object(thing: SceneObject, n_materials: int) -> str:
-    if not 0 <= thing.material < n_materials:
-        return f"has material {thing.material}, expected one of the {n_materials} materials"
-    if isinstance(thing, Polygon | MeshPart):
-        shape = np.shape(thing.vertices)
+def _problem_of_object(obj: SceneObject, n_materials: int) -> str:
+    if not 0 <= obj.material < n_materials:
+        return f"has material {obj.material}, expected one of the {n_materials} materials"
+    if isinstance(obj, Polygon | MeshPart):
+        shape = np.shape(obj.vertices)
         if len(shape) != 2 or shape[1] != 3:
             return f"has vertices of shape {shape}, expected (n, 3)"
-        if isinstance(thing, Polygon) and shape[0] < 3:
+        if isinstance(obj, Polygon) and shape[0] < 3:
             return f"is a polygon of {shape[0]} vertices, expected at least 3"
-    return _problem_of_faces(thing) if isinstance(thing, MeshPart) else ""
+    return _problem_of_faces(obj) if isinstance(obj, MeshPart) else ""
 
 
 def _problem_of_faces(part: MeshPart) -> str:

@@ -1,6 +1,14 @@
 """Cutting the triangles of a mesh into objects: the grain of everything that moves data.
 
-All cuts depend on the order of the triangles and their positions alone.
+All cuts depend on the order of the triangles and their positions alone. A square of two triangles
+and a triangle apart, as an STL file stores them, with the corners of each triangle its own::
+
+    vertices   a b c   a c d   e f g         faces  (0 1 2) (3 4 5) (6 7 8)
+    welded     a b c d e f g                        (0 1 2) (0 2 3) (4 5 6)
+    cut        nodes: [0 1 2]    components: [0 1] [2]    clusters of 1: [0] [1] [2]
+    compacted  components: (a b c d; (0 1 2) (0 2 3))  (e f g; (0 1 2))
+
+Without the welding every triangle of an STL file would be a component of its own.
 """
 
 from __future__ import annotations
@@ -11,8 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.units import shown
 from simmpp.scene.scene import Floats
 
+OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
 Indices = NDArray[np.int64]
 Cut = Callable[[Floats, Indices], list[Indices]]
 """Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
@@ -22,20 +32,18 @@ def cut_named(objects: object) -> tuple[str, Cut]:
     """Label and cut for the configuration's ``objects``.
 
     ``nodes`` keeps a scene node whole, ``components`` parts what no vertex joins,
-    ``{clusters: k}`` bisects until no object has more than k triangles.
+    ``{clusters: k}`` bisects until no object has more than k triangles. Raises ConfigError, which
+    says what was expected.
     """
     if objects == "nodes":
         return "nodes", _whole
     if objects == "components":
         return "components", _components
     if isinstance(objects, Mapping) and set(objects) == {"clusters"}:
-        largest = objects["clusters"]
-        if isinstance(largest, bool) or not isinstance(largest, int) or largest < 1:
-            raise ConfigError(
-                f"objects.clusters: expected a number of triangles of at least 1, got {largest!r}"
-            )
-        return str(largest), lambda vertices, faces: _clusters(vertices, faces, largest)
-    raise ConfigError(f"objects: expected nodes, components or {{clusters: k}}, got {objects!r}")
+        most = objects["clusters"]
+        if isinstance(most, int) and not isinstance(most, bool) and most >= 1:
+            return str(most), lambda vertices, faces: _clusters(vertices, faces, most)
+    raise ConfigError(f"value {shown(objects)}: expected {OBJECTS}")
 
 
 def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
@@ -47,6 +55,7 @@ def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
     order = np.lexsort(used.T)
     ordered = used[order]
     is_new = np.ones(len(order), dtype=np.bool_)
+    # Compared as numbers, not as bytes: 0.0 and -0.0 are one position.
     is_new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
     first = order[is_new]  # the sort is stable
     rank = np.empty_like(first)
@@ -60,6 +69,7 @@ def compacted(
     vertices: Floats, faces: Indices, parts: list[Indices]
 ) -> list[tuple[Floats, NDArray[np.int32]]]:
     """Of each part the vertices that its faces use, in order of index, and its faces into them."""
+    # One sort for all parts: a key is a vertex of one part, whichever others share it.
     sizes = np.array([len(rows) for rows in parts])
     part = np.repeat(np.arange(len(parts)), sizes)
     keys = part[:, None] * len(vertices) + faces[np.concatenate(parts)]
@@ -85,6 +95,7 @@ def _components(vertices: Floats, faces: Indices) -> list[Indices]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
+    # Two of its edges join a face's three vertices; the third would say it again.
     rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
     n = len(vertices)
     links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))
@@ -96,7 +107,7 @@ def _components(vertices: Floats, faces: Indices) -> list[Indices]:
     return np.split(order, np.flatnonzero(np.diff(rank[order])) + 1)
 
 
-def _clusters(vertices: Floats, faces: Indices, largest: int) -> list[Indices]:
+def _clusters(vertices: Floats, faces: Indices, most: int) -> list[Indices]:
     """Recursive bisection of the triangles' centroids on their longest axis.
 
     Ties between axes: x before y before z; between triangles: their order. Counts split
@@ -108,7 +119,7 @@ def _clusters(vertices: Floats, faces: Indices, largest: int) -> list[Indices]:
     waiting = [np.arange(len(faces))]
     while waiting:
         part = waiting.pop()
-        if len(part) <= largest:
+        if len(part) <= most:
             done.append(np.sort(part))
             continue
         points = centroids[part]

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pandas as pd
 
 from simmpp.scene.boxes import boxes, scene_box
-from simmpp.scene.scene import Scene
+from simmpp.scene.scene import Scene, SceneObject
 from simmpp.scene.triangles import n_triangles
 from simmpp.scene.wire import bytes_on_the_wire
-
-KINDS = ("sphere", "cone", "polygon", "mesh")
 
 
 def describe(scene: Scene) -> dict[str, Any]:
@@ -23,16 +21,16 @@ def describe(scene: Scene) -> dict[str, Any]:
     don't occur; ``triangles`` leaves out spheres and cones, which have none; ``reflecting`` and
     ``transmitting`` count objects.
     """
-    items = scene.objects
-    kinds = Counter(item.kind for item in items)
-    surfaces = [scene.materials[item.material] for item in items]
-    low, high = scene_box(items).tolist() if items else (None, None)
+    objects = scene.objects
+    kinds = Counter(obj.kind for obj in objects)
+    surfaces = [scene.materials[obj.material] for obj in objects]
+    low, high = scene_box(objects).tolist() if objects else (None, None)
     return {
         "name": scene.name,
-        "n_objects": len(items),
-        "objects": {kind: kinds[kind] for kind in KINDS if kinds[kind]},
-        "triangles": sum(map(n_triangles, items)),
-        "bytes": sum(map(bytes_on_the_wire, items)),
+        "n_objects": len(objects),
+        "objects": {of.kind: kinds[of.kind] for of in get_args(SceneObject) if kinds[of.kind]},
+        "triangles": sum(map(n_triangles, objects)),
+        "bytes": sum(map(bytes_on_the_wire, objects)),
         "box": {"low": low, "high": high},
         "reflecting": sum(surface.reflects for surface in surfaces),
         "transmitting": sum(surface.transmits for surface in surfaces),
@@ -52,22 +50,22 @@ def object_table(scene: Scene) -> pd.DataFrame:
     Columns ``id, kind, name, material, triangles, bytes``, and the box ``x_low, y_low, z_low,
     x_high, y_high, z_high`` in scene units.
     """
-    items = scene.objects
-    bounds = boxes(items).reshape(-1, 6)
+    objects = scene.objects
+    bounds = boxes(objects).reshape(-1, 6)
     table: dict[str, Any] = {
-        "id": np.arange(len(items)),
-        "kind": [item.kind for item in items],
-        "name": [getattr(item, "name", "") for item in items],
-        "material": [item.material for item in items],
-        "triangles": [n_triangles(item) for item in items],
-        "bytes": [bytes_on_the_wire(item) for item in items],
+        "id": np.arange(len(objects)),
+        "kind": [obj.kind for obj in objects],
+        "name": [getattr(obj, "name", "") for obj in objects],
+        "material": [obj.material for obj in objects],
+        "triangles": [n_triangles(obj) for obj in objects],
+        "bytes": [bytes_on_the_wire(obj) for obj in objects],
     }
     corners = [f"{axis}_{end}" for end in ("low", "high") for axis in "xyz"]
     return pd.DataFrame(table | dict(zip(corners, bounds.T, strict=True)))
 
 
 def _materials(scene: Scene) -> list[dict[str, Any]]:
-    users = Counter(item.material for item in scene.objects)
+    users = Counter(obj.material for obj in scene.objects)
     return [
         {
             "id": i,

@@ -19,8 +19,9 @@ from simmpp.common.errors import SceneError
 from simmpp.common.files import refuse_special
 from simmpp.scene.boxes import scene_box
 from simmpp.scene.cut import Cut, Indices, compacted, cut_named, welded
+from simmpp.scene.framing import framing
 from simmpp.scene.nff_words import LARGEST
-from simmpp.scene.scene import Camera, Floats, Light, Material, MeshPart, Scene, Vector
+from simmpp.scene.scene import Floats, Material, MeshPart, Scene, Vector
 
 Y_UP: Vector = (0.0, 1.0, 0.0)
 Z_UP: Vector = (0.0, 0.0, 1.0)
@@ -28,7 +29,7 @@ Z_UP_FORMATS = (".stl",)
 """Formats of construction, where z points up; in the others (glTF by its standard) y does."""
 BACKGROUND: Vector = (0.078, 0.361, 0.753)
 """That of most SPD scenes."""
-METALLIC, ROUGHNESS = 0.9, 0.3
+LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
 MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
 
@@ -112,11 +113,11 @@ def _read(file: Path) -> Any:
     try:
         refuse_special(file)
         with file.open("rb") as opened:
-            opened.read(1)
+            opened.read(1)  # a folder, or a file that may not be read, is told by its own error
         if kind not in mesh_formats():
-            known = ", ".join(sorted(mesh_formats()))
+            formats = ", ".join(sorted(mesh_formats()))
             raise SceneError(
-                f"neither NFF (.nff) nor a mesh that trimesh reads ({known})", where=str(file)
+                f"neither NFF (.nff) nor a mesh that trimesh reads ({formats})", where=str(file)
             )
         return trimesh.load_scene(str(file), process=False, **_options(kind))
     except SceneError:
@@ -160,7 +161,7 @@ def _material(mesh: Any) -> Material:
     roughness = getattr(surface, "roughnessFactor", None)
     metallic = getattr(surface, "metallicFactor", None)
     metallic = 1.0 if metallic is None else metallic  # glTF's default, as roughness 1 is
-    if roughness is not None and metallic >= METALLIC and roughness <= ROUGHNESS:
+    if roughness is not None and metallic >= LEAST_METALLIC and roughness <= MOST_ROUGHNESS:
         return Material(colour, kd=MIRROR, ks=MIRROR)
     return Material(colour)
 
@@ -170,43 +171,3 @@ def _colour(rgba: Floats) -> Vector:
     values = [float(value) / 255 for value in rgba.ravel()[:3]]
     red, green, blue = (min(max(v, 0.0), 1.0) if math.isfinite(v) else 0.0 for v in values)
     return red, green, blue
-
-
-# --- a camera and lights for objects that come without: a three-quarter view of all of them ---
-
-
-ANGLE_DEGREES = 45.0
-ROOM = 1.05
-"""The bounding sphere fills the view but for this factor. ESTIMATE."""
-
-
-def framing(bounds: Floats, *, up: Vector) -> tuple[Camera, tuple[Light, ...]]:
-    """Camera and lights that show everything within ``bounds`` (2, 3) float64.
-
-    The eye looks down at the centre from front right, far enough for the bounding sphere to be in
-    view; a light stands above left of the eye, another far to the right. ``up`` is +y or +z.
-    """
-    centre = (bounds[0] + bounds[1]) / 2
-    radius = math.dist(bounds[0], bounds[1]) / 2
-    above = np.array(up)
-    # y up: front is +z, right is +x; z up: front is -y, right is +x.
-    right = np.array([1.0, 0.0, 0.0])
-    front = np.cross(right, above)
-    towards_eye = _unit(0.6 * right + front + 0.55 * above)
-    distance = ROOM * radius / math.sin(math.radians(ANGLE_DEGREES) / 2)
-    eye = centre + distance * towards_eye
-    lights = (
-        centre + 2 * distance * _unit(front - 0.4 * right + 1.2 * above),
-        centre + 2 * distance * _unit(right + 0.3 * front + 0.6 * above),
-    )
-    camera = Camera(_vector(eye), _vector(centre), up, ANGLE_DEGREES)
-    return camera, tuple(Light(_vector(light)) for light in lights)
-
-
-def _unit(v: Floats) -> Floats:
-    unit: Floats = v / math.hypot(*v)
-    return unit
-
-
-def _vector(v: Floats) -> Vector:
-    return float(v[0]), float(v[1]), float(v[2])

@@ -8,10 +8,14 @@ absolute value.
 from __future__ import annotations
 
 import math
+from os import PathLike
+from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
 
+from simmpp.common.errors import SceneError
+from simmpp.common.files import refuse_special
 from simmpp.scene import nff_text
 from simmpp.scene.nff_words import Words
 from simmpp.scene.scene import (
@@ -31,6 +35,20 @@ MAX_VERTICES = 1_000_000
 """Largest polygon read; the SPD's largest has 144 vertices."""
 MAX_RESOLUTION = 65536
 WHITE: Vector = (1.0, 1.0, 1.0)
+
+
+def load_nff(file: str | PathLike[str]) -> Scene:
+    """The scene of an NFF file, called as the file is; SceneError for one that can't be read."""
+    path = Path(file)
+    try:
+        refuse_special(path)
+        data = path.read_bytes()
+    except (OSError, ValueError) as error:  # a null byte in the name is a ValueError
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SceneError(f"can't read the file: {reason}", where=str(path)) from None
+    # Comments may hold anything; the words are checked to be ASCII.
+    text = data.decode("utf-8-sig", errors="replace")
+    return read_nff(text, name=path.stem, where=str(path))
 
 
 def read_nff(text: str, *, name: str, where: str) -> Scene:
@@ -70,8 +88,8 @@ class _Reader:
             keyword = words.word()
             read = self.read.get(keyword)
             if read is None:
-                known = ", ".join(self.read)
-                words.fail(f"expected a keyword ({known}), got {words.shown(keyword)}")
+                keywords = ", ".join(self.read)
+                words.fail(f"expected a keyword ({keywords}), got {words.shown(keyword)}")
             read()
         if self.camera is None:
             words.fail("no view: an NFF file needs one 'v'", at_end=True)
@@ -104,6 +122,7 @@ class _Reader:
             resolution = self._resolution(), self._resolution()
         towards = np.subtract(at, eye)
         sideways = np.linalg.norm(np.cross(towards, up))
+        # "not above" rather than "at most": what overflowed to NaN is no direction either.
         if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(up):
             self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
         self.camera = Camera(eye, at, up, angle, hither, resolution)
@@ -207,11 +226,11 @@ def write_nff(scene: Scene) -> str:
             else nff_text.coloured_light(light.position, light.colour)
         )
     current = -1
-    for item in scene.objects:
-        if item.material != current:
-            current = item.material
+    for obj in scene.objects:
+        if obj.material != current:
+            current = obj.material
             parts.append(_material_line(scene.materials[current]))
-        parts.append(_object_lines(item))
+        parts.append(_object_lines(obj))
     return "".join(parts)
 
 
@@ -219,17 +238,17 @@ def _material_line(m: Material) -> str:
     return nff_text.material(m.colour, m.kd, m.ks, m.shine, m.transmittance, m.ior)
 
 
-def _object_lines(item: SceneObject) -> str:
-    match item:
+def _object_lines(obj: SceneObject) -> str:
+    match obj:
         case Sphere():
-            return nff_text.sphere(item.centre, item.radius)
+            return nff_text.sphere(obj.centre, obj.radius)
         case Cone():
-            return nff_text.cone(item.base, item.base_radius, item.apex, item.apex_radius)
+            return nff_text.cone(obj.base, obj.base_radius, obj.apex, obj.apex_radius)
         case Polygon():
-            vertices = item.vertices.tolist()
-            if item.normals is None:
+            vertices = obj.vertices.tolist()
+            if obj.normals is None:
                 return nff_text.polygon(vertices)
-            return nff_text.patch(vertices, item.normals.tolist())
+            return nff_text.patch(vertices, obj.normals.tolist())
         case MeshPart():
-            corners = item.vertices[item.faces].tolist()
+            corners = obj.vertices[obj.faces].tolist()
             return "".join(nff_text.polygon(triangle) for triangle in corners)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-Point = Sequence[float]
+Triple = Sequence[float]
 
 
 def numbers(*values: float) -> str:
@@ -17,9 +17,9 @@ def numbers(*values: float) -> str:
 
 
 def view(
-    eye: Point,
-    at: Point,
-    up: Point,
+    eye: Triple,
+    at: Triple,
+    up: Triple,
     angle_degrees: float = 45.0,
     hither: float = 1.0,
     resolution: tuple[int, int] = (512, 512),
@@ -36,23 +36,23 @@ def view(
     )
 
 
-def background(colour: Point) -> str:
+def background(colour: Triple) -> str:
     """A ``b`` line."""
     return f"b {numbers(*colour)}\n"
 
 
-def light(position: Point) -> str:
+def light(position: Triple) -> str:
     """An ``l`` line without the optional colour."""
     return f"l {numbers(*position)}\n"
 
 
-def coloured_light(position: Point, colour: Point) -> str:
+def coloured_light(position: Triple, colour: Triple) -> str:
     """An ``l`` line with the optional colour, which the SPD never writes."""
     return f"l {numbers(*position, *colour)}\n"
 
 
 def material(
-    colour: Point,
+    colour: Triple,
     kd: float,
     ks: float = 0.0,
     shine: float = 100000.0,
@@ -63,23 +63,23 @@ def material(
     return f"f {numbers(*colour, kd, ks, shine, transmittance, ior)}\n"
 
 
-def sphere(centre: Point, radius: float) -> str:
+def sphere(centre: Triple, radius: float) -> str:
     """An ``s`` line."""
     return f"s {numbers(*centre, radius)}\n"
 
 
-def cone(base: Point, base_radius: float, apex: Point, apex_radius: float) -> str:
+def cone(base: Triple, base_radius: float, apex: Triple, apex_radius: float) -> str:
     """A ``c`` line, on one line as SPD 3.x writes it."""
     return f"c {numbers(*base, base_radius, *apex, apex_radius)}\n"
 
 
-def polygon(vertices: Iterable[Point]) -> str:
+def polygon(vertices: Iterable[Triple]) -> str:
     """A ``p`` block."""
     lines = [numbers(*vertex) + "\n" for vertex in vertices]
     return f"p {len(lines)}\n" + "".join(lines)
 
 
-def patch(vertices: Iterable[Point], normals: Iterable[Point]) -> str:
+def patch(vertices: Iterable[Triple], normals: Iterable[Triple]) -> str:
     """A ``pp`` block: a polygon with a normal per vertex."""
     lines = [
         numbers(*vertex, *normal) + "\n" for vertex, normal in zip(vertices, normals, strict=True)

@@ -50,7 +50,7 @@ class Words:
         return self.words[self.position - 1]
 
     def expect(self, keyword: str) -> None:
-        """Read that word."""
+        """Read a word, which must be this one."""
         got = self.word(f"'{keyword}'")
         if got != keyword:
             self.fail(f"expected '{keyword}', got {self.shown(got)}")
@@ -85,7 +85,7 @@ class Words:
         return values
 
     def number(self, what: str) -> float:
-        """One finite number."""
+        """Read a number; ``what`` it is stands in the error if it is none, or not finite."""
         return self.numbers(1, what)[0]
 
     def vector(self, what: str, keyword: str = "") -> Vector:

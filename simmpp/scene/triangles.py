@@ -14,31 +14,31 @@ Faces = NDArray[np.int64]
 Pair = tuple[float, float]
 
 
-def triangles(item: SceneObject) -> Floats:
+def triangles(obj: SceneObject) -> Floats:
     """Triangles of a polygon or mesh part, (m, 3, 3) float64; m is 0 for spheres and cones.
 
     A convex polygon becomes a fan from its first vertex, a concave one is cut by ear clipping. m
     is at least 1 for a polygon, whatever its shape; triangles may have no area.
     """
-    match item:
+    match obj:
         case Polygon():
-            vertices = np.asarray(item.vertices, dtype=np.float64)
+            vertices = np.asarray(obj.vertices, dtype=np.float64)
             if len(vertices) == 3:
                 return vertices[None]
             return vertices[polygon_faces(vertices)]
         case MeshPart():
-            return np.asarray(item.vertices, dtype=np.float64)[item.faces]
+            return np.asarray(obj.vertices, dtype=np.float64)[obj.faces]
         case Sphere() | Cone():
             return np.empty((0, 3, 3))
 
 
-def n_triangles(item: SceneObject) -> int:
+def n_triangles(obj: SceneObject) -> int:
     """Number of triangles of an object; 0 for spheres and cones."""
-    match item:
+    match obj:
         case Polygon():
-            return 1 if len(item.vertices) == 3 else len(polygon_faces(item.vertices))
+            return 1 if len(obj.vertices) == 3 else len(polygon_faces(obj.vertices))
         case MeshPart():
-            return len(item.faces)
+            return len(obj.faces)
         case Sphere() | Cone():
             return 0
 
@@ -86,7 +86,7 @@ def _turn(a: Pair, b: Pair, c: Pair) -> float:
 
 
 def _is_convex(flat: list[Pair]) -> bool:
-    """All corners turn one way."""
+    """Whether all corners turn one way, straight ones aside."""
     turns = [_turn(flat[i - 2], flat[i - 1], flat[i]) for i in range(len(flat))]
     return min(turns) >= 0 or max(turns) <= 0
 

@@ -22,17 +22,17 @@ FACE_BYTES = 12
 """Three 32-bit indices."""
 
 
-def bytes_on_the_wire(item: SceneObject) -> int:
+def bytes_on_the_wire(obj: SceneObject) -> int:
     """Size of an object in a message, in bytes, without the message's header. ESTIMATE.
 
     Sphere, cone and triangle 128; a polygon 24 more per vertex beyond the third and per vertex
     normal; a mesh part 56 + 24 per vertex + 12 per face.
     """
-    match item:
+    match obj:
         case Sphere() | Cone():
             return PRIMITIVE_BYTES
         case Polygon():
-            normals = 0 if item.normals is None else len(item.normals)
-            return PRIMITIVE_BYTES + POINT_BYTES * (len(item.vertices) - 3 + normals)
+            normals = 0 if obj.normals is None else len(obj.normals)
+            return PRIMITIVE_BYTES + POINT_BYTES * (len(obj.vertices) - 3 + normals)
         case MeshPart():
-            return MESH_BYTES + POINT_BYTES * len(item.vertices) + FACE_BYTES * len(item.faces)
+            return MESH_BYTES + POINT_BYTES * len(obj.vertices) + FACE_BYTES * len(obj.faces)

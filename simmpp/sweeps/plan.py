@@ -14,7 +14,6 @@ from simmpp.config.axes import SAME, axes_of, keys_of
 from simmpp.config.config import Config, Source, described
 from simmpp.methods.columns import KEYS, METHOD, NUMBERS
 from simmpp.methods.table import METHODS
-from simmpp.run.inputs import name_and_digest
 from simmpp.run.provenance import result_versions
 from simmpp.run.rows import in_order
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
@@ -114,7 +113,7 @@ def plan(config: Config) -> Plan:
         _refuse_unknown(point)
         made_of = repr((point.config.scene_spec, point.config.picture))
         if made_of not in workloads:
-            workloads[made_of] = name_and_digest(point.config)
+            workloads[made_of] = point.config.ray_source.name_and_digest(point.config.picture)
         name, digest = workloads[made_of]
         points.append(PlannedPoint(point, task_of(point, digest), name))
     further = further_columns(config)

@@ -6,23 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.workload import OBJECT_KINDS, PRIMARY, RAY_KINDS, SHADOW, Workload
-
-DTYPES = {
-    "kinds": np.uint8,
-    "parents": np.int32,
-    "child_offsets": np.int32,
-    "pixels": np.int32,
-    "hits": np.int32,
-    "hit_distances": np.float64,
-    "itinerary_offsets": np.int64,
-    "itinerary_objects": np.int32,
-    "object_kinds": np.uint8,
-    "object_triangles": np.int32,
-    "object_bytes": np.int64,
-    "object_centroids": np.float64,
-    "object_test_ps": np.int64,
-}
+from simmpp.workload.workload import ARRAYS, OBJECT_KINDS, PRIMARY, RAY_KINDS, SHADOW, Workload
 
 
 def check(workload: Workload, where: str) -> None:
@@ -36,7 +20,7 @@ def check(workload: Workload, where: str) -> None:
 def _problem_of_shapes(workload: Workload) -> str:
     n, n_objects = workload.n_rays, workload.n_objects
     lengths = {"child_offsets": n + 1, "itinerary_offsets": n + 1}
-    for name, dtype in DTYPES.items():
+    for name, dtype in ARRAYS.items():
         array = getattr(workload, name)
         if array.dtype != dtype:
             return f"{name} is {array.dtype}, expected {np.dtype(dtype)}"

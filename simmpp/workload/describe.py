@@ -32,8 +32,8 @@ def _row(name: str, lengths: NDArray[np.int64]) -> Fact:
     }
 
 
-def generations(workload: Workload) -> list[int]:
-    """Rays of depth 1, 2, ..."""
+def rays_by_depth(workload: Workload) -> list[int]:
+    """Number of rays of depth 1, 2, ...; a generation lies behind the one that spawned it."""
     counts, first, last = [], 0, workload.n_primaries
     while first < last:
         counts.append(last - first)

@@ -32,22 +32,23 @@ def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
     camera = scene.camera
     yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
+    # Without refraction no ray reads the index, so it must not tell two scenes apart.
     spawned = [(m.reflects, m.transmits, m.ior if m.transmits else 1.0) for m in scene.materials]
-    for thing in scene.objects:
-        yield thing.kind.encode()
-        yield _bytes(bytes_on_the_wire(thing), *spawned[thing.material])
-        yield from _geometry(thing)
+    for obj in scene.objects:
+        yield obj.kind.encode()
+        yield _bytes(bytes_on_the_wire(obj), *spawned[obj.material])
+        yield from _geometry(obj)
 
 
-def _geometry(thing: SceneObject) -> Iterator[bytes]:
-    if isinstance(thing, Sphere):
-        yield _bytes(*thing.centre, thing.radius)
-    elif isinstance(thing, Cone):
-        yield _bytes(*thing.base, thing.base_radius, *thing.apex, thing.apex_radius)
+def _geometry(obj: SceneObject) -> Iterator[bytes]:
+    if isinstance(obj, Sphere):
+        yield _bytes(*obj.centre, obj.radius)
+    elif isinstance(obj, Cone):
+        yield _bytes(*obj.base, obj.base_radius, *obj.apex, obj.apex_radius)
     else:
-        yield np.asarray(thing.vertices, dtype="<f8").tobytes()
-        if isinstance(thing, MeshPart):
-            yield np.asarray(thing.faces, dtype="<i8").tobytes()
+        yield np.asarray(obj.vertices, dtype="<f8").tobytes()
+        if isinstance(obj, MeshPart):
+            yield np.asarray(obj.faces, dtype="<i8").tobytes()
 
 
 def _bytes(*numbers: float) -> bytes:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +65,7 @@ class Workload:
 
     @property
     def n_rays(self) -> int:
-        """Number of rays."""
+        """Number of rays of all kinds, primary rays and their descendants."""
         return len(self.kinds)
 
     @property
@@ -84,12 +84,19 @@ class Workload:
         return len(self.itinerary_objects)
 
 
+ARRAYS: dict[str, type[np.generic]] = {
+    name: get_args(get_args(hint)[1])[0]  # NDArray[t] is ndarray[shape, dtype[t]]
+    for name, hint in get_type_hints(Workload).items()
+    if get_origin(hint) is np.ndarray
+}
+"""Type of the entries of each array of a workload."""
+
+
 def frozen(workload: Workload) -> Workload:
     """The same workload with read-only, C-contiguous arrays; the caller's stay as they are."""
     arrays: dict[str, Any] = {}
-    for each in dataclasses.fields(workload):
-        value = getattr(workload, each.name)
+    for name, value in vars(workload).items():
         if isinstance(value, np.ndarray):
-            arrays[each.name] = np.ascontiguousarray(value).view()
-            arrays[each.name].flags.writeable = False
+            arrays[name] = np.ascontiguousarray(value).view()  # the caller's flags are left alone
+            arrays[name].flags.writeable = False
     return dataclasses.replace(workload, **arrays)

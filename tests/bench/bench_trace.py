@@ -13,9 +13,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
 from simmpp.workload.trace.generations import Rays, children, first_generation, joined, spawning

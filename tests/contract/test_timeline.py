@@ -14,7 +14,7 @@ from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.messages import LOAD
-from simmpp.report.timeline.slices import COMMUNICATION, IDLE, Part, Timeline, Window
+from simmpp.report.timeline.slices import COMMUNICATION, IDLE, Timeline, TimelinePart, Window
 
 pytestmark = pytest.mark.parametrize("engine", ENGINES)
 many = settings(max_examples=25, deadline=None, derandomize=True)
@@ -22,11 +22,11 @@ many = settings(max_examples=25, deadline=None, derandomize=True)
 
 def timeline_of(
     engine: str, case: Case, log_rows: int = 3, window: Window | None = None
-) -> tuple[Result, list[Part]]:
+) -> tuple[Result, list[TimelinePart]]:
     """A run and the parts of its timeline, handed on in small portions."""
     window = window or Window()
     timeline = Timeline(case.machine.processors, case.machine.probe_ps, window)
-    parts: list[Part] = []
+    parts: list[TimelinePart] = []
     with pytest.MonkeyPatch.context() as patch:
         for module in (start, state):
             patch.setattr(module, "LOG_ROWS", log_rows)
@@ -42,7 +42,7 @@ def timeline_of(
     return result, [*parts, timeline.end(result.makespan_ps)]
 
 
-def joined(parts: list[Part]) -> NDArray[np.void]:
+def joined(parts: list[TimelinePart]) -> NDArray[np.void]:
     """All slices."""
     slices: NDArray[np.void] = np.concatenate([part.slices for part in parts])
     return slices

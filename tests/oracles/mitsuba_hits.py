@@ -16,9 +16,9 @@ from importlib.resources import files
 import numpy as np
 
 from oracles.mitsuba_scene import MitsubaScene
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import find_itineraries

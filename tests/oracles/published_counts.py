@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.scene.load import load_scene
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import PRIMARY, SHADOW
 

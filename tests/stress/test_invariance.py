@@ -19,10 +19,10 @@ from transforms import moved, scaled
 
 import simmpp
 from simmpp.common.errors import SceneError
-from simmpp.scene.load import load_scene
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Camera, Cone, Light, Material, MeshPart, Polygon, Scene, Sphere
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
 from simmpp.workload.trace.shading import render

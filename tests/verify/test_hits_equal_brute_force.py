@@ -7,8 +7,8 @@ import pytest
 from oracles.aimed_rays import aimed_rays
 from oracles.brute_force import OPEN, BruteForce
 
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Camera, Light, Material, MeshPart, Scene
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
 from simmpp.workload.trace.geometry import Geometry, flatten

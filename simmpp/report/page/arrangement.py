@@ -14,32 +14,32 @@ AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy
 PREFERRED = ("fraction", "processors")
 """Abscissas, of those with equally many values."""
 MOST_PANELS = 12
-"""Panels side by side; an axis with more values is chosen from."""
+"""Panels side by side; an axis with more values becomes plates."""
 Axes = Mapping[str, Sequence[Any]]
 """Values of each axis that has several, sorted."""
 
 
 @dataclass(frozen=True)
 class Arrangement:
-    """What becomes of each axis."""
+    """What becomes of each axis of a sweep: run along it, panels for it, or plates."""
 
     abscissa: str
     values: tuple[Any, ...]
     """Of the abscissa."""
     facet: str | None
     """One panel for each of its values; one panel in all where there is no such axis."""
-    chosen: tuple[str, ...]
+    plate_axes: tuple[str, ...]
     """The others: one plate of panels for each combination of them that there is."""
 
 
 def axes_of(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[Any]]:
     """The axes along which rows differ, but for policy and seed."""
-    found: dict[str, list[Any]] = {}
+    axes: dict[str, list[Any]] = {}
     for name in (*AXES, *further):
         values = {row[name] for row in rows}
         if len(values) > 1:
-            found[name] = sorted(values, key=lambda each: sort_key({"": each}, ("",)))
-    return found
+            axes[name] = sorted(values, key=lambda cell: sort_key({"": cell}, ("",)))
+    return axes
 
 
 def abscissas(axes: Axes) -> list[str]:
@@ -77,7 +77,7 @@ def _follows(rows: Sequence[Row], name: str, abscissa: str) -> bool:
     values: dict[Hashable, set[Hashable]] = {}
     for row in rows:
         values.setdefault(row[abscissa], set()).add(row[name])
-    return name != "scene" and all(len(each) == 1 for each in values.values())
+    return name != "scene" and all(len(others) == 1 for others in values.values())
 
 
 def plates(
@@ -85,11 +85,11 @@ def plates(
 ) -> dict[str, dict[str, list[tuple[int, Row]]]]:
     """Numbered rows of each panel of each plate, by what these are of, in the order of the axes."""
     facet = (arrangement.facet,) if arrangement.facet else ()
-    names = (*arrangement.chosen, *facet)
-    numbered = sorted(enumerate(rows), key=lambda each: sort_key(each[1], names))
+    names = (*arrangement.plate_axes, *facet)
+    numbered = sorted(enumerate(rows), key=lambda numbered_row: sort_key(numbered_row[1], names))
     return {
         plate: _split(of_plate, facet)
-        for plate, of_plate in _split(numbered, arrangement.chosen).items()
+        for plate, of_plate in _split(numbered, arrangement.plate_axes).items()
     }
 
 
@@ -97,11 +97,12 @@ def _split(
     numbered: Iterable[tuple[int, Row]], names: Sequence[str]
 ) -> dict[str, list[tuple[int, Row]]]:
     """Rows by the values of some axes, in words; values that differ little have words that do."""
-    found: dict[tuple[Hashable, ...], list[tuple[int, Row]]] = {}
+    groups: dict[tuple[Hashable, ...], list[tuple[int, Row]]] = {}
     for number, row in numbered:
-        found.setdefault(tuple(row[name] for name in names), []).append((number, row))
-    said: dict[str, list[tuple[int, Row]]] = {}
-    for of in found.values():
-        text = words.point(of[0][1], names)
-        said[text if text not in said else f"{text} ({len(said) + 1})"] = of
-    return said
+        groups.setdefault(tuple(row[name] for name in names), []).append((number, row))
+    by_text: dict[str, list[tuple[int, Row]]] = {}
+    for group in groups.values():
+        text = words.point(group[0][1], names)
+        # 1/3 and 0.3333 are both "33.3 %": the second gets a number, not the first one's rows.
+        by_text[text if text not in by_text else f"{text} ({len(by_text) + 1})"] = group
+    return by_text

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from simmpp.plot.curves import Bars, Scale
+from simmpp.plot.curves import PERCENT, Bars, Scale
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
-STEMS = ACCOUNTS, MESSAGES = ("accounts-by-policy", "messages-by-kind")
-PERCENT, MARGIN = 100, 1.02
+STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")
+MARGIN = 1.02
 
 
 def bar_figures(points: Points) -> Iterator[Figure]:
     """Accounts and messages along the best axis, one panel for each policy."""
     yield _figure(
         points,
-        ACCOUNTS,
+        ACCOUNTS_STEM,
         "What PEs spend their time with",
         "shares of the time of all PEs, all seeds together",
         Scale("share of time (%)"),
@@ -27,7 +27,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
     )
     yield _figure(
         points,
-        MESSAGES,
+        MESSAGES_STEM,
         "Messages by kind",
         "means over seeds; the same scale for all policies",
         Scale("messages"),
@@ -47,17 +47,17 @@ def _figure(
     facet = None if along == "policy" else "policy"
     arrangement = arrange(points.profits, points.axes, along, facet)
     label = words.abscissa(along, list(arrangement.values))[0].label
-    found: dict[str, list[Bars]] = {}
+    bars_of: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
-        shown = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
-        most = max((sum(heights(n).values()) for ns in shown.values() for n in ns), default=1)
+        numbers_of = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
+        most = max((sum(heights(n).values()) for ns in numbers_of.values() for n in ns), default=1)
         for panel in sorted(panels, key=_colour_order(points)):
-            names = tuple(words.label(along, points.profits[n][along]) for n in shown[panel])
-            parts = _parts([heights(number) for number in shown[panel]])
+            names = tuple(words.label(along, points.profits[n][along]) for n in numbers_of[panel])
+            parts = _parts([heights(number) for number in numbers_of[panel]])
             scale = replace(y, limits=(0, most * MARGIN))
-            bars = Bars(panel, Scale(label, names=names), scale, parts, shown[panel])
-            found.setdefault(plate, []).append(bars)
-    return Figure(stem, title, note, found)
+            bars = Bars(panel, Scale(label, names=names), scale, parts, numbers_of[panel])
+            bars_of.setdefault(plate, []).append(bars)
+    return Figure(stem, title, note, bars_of)
 
 
 def _colour_order(points: Points) -> Callable[[str], int]:

@@ -10,9 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from simmpp.common.errors import ConfigError
-from simmpp.report.page import accuracy, bar_figures
-from simmpp.report.page.profit_figures import TITLES
-from simmpp.studies.nebel98.figures import FIGURES
+from simmpp.report.page.groups import GROUPS
 
 TOPICS = {
     "sensitivity": "Sensitivity",
@@ -20,16 +18,18 @@ TOPICS = {
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
 """Kinds of pictures."""
-OWN = (*(name.replace("_", "-") for name in TITLES), *bar_figures.STEMS, accuracy.STEM, *FIGURES)
-"""Beginnings of the stems of a report's own figures, which may be those of an earlier one."""
-MOST_ROWS = 200
+OWN = tuple(stem for group in GROUPS for stem in group.stems)
+"""A report's own figures, which may be those of an earlier one."""
+FIGURES_FOLDER = "figures"
+"""Where a report writes its figures, and `run --figures` may have written others."""
+MOST_LINES = 200
 """Lines of a table that are shown."""
-MOST_BYTES = 1_500_000
+MOST_PICTURE_BYTES = 1_500_000
 """Size of a picture that is put into the page."""
 
 
 @dataclass(frozen=True)
-class Picture:
+class EmbeddedPicture:
     """A picture, in the page itself."""
 
     name: str
@@ -38,7 +38,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Table:
+class CsvTable:
     """A CSV file, as it is."""
 
     name: str
@@ -51,8 +51,8 @@ class Section(NamedTuple):
 
     id: str
     name: str
-    pictures: list[Picture]
-    tables: list[Table]
+    pictures: list[EmbeddedPicture]
+    tables: list[CsvTable]
 
 
 def beside(folder: Path) -> list[Section]:
@@ -60,38 +60,38 @@ def beside(folder: Path) -> list[Section]:
     sections = []
     for topic, name in TOPICS.items():
         stems = [topic, f"{topic}-*"]
-        tables = [_table(path) for path in _found(folder, [f"{stem}.csv" for stem in stems])]
+        tables = [_table(path) for path in _matching(folder, [f"{stem}.csv" for stem in stems])]
         sections.append(Section(topic, name, _pictures(folder, stems), tables))
-    others = [p for p in _pictures(folder / "figures", ["*"]) if not p.name.startswith(OWN)]
+    others = [p for p in _pictures(folder / FIGURES_FOLDER, ["*"]) if not p.name.startswith(OWN)]
     sections.append(Section("runs", "Pictures of single runs", others, []))
-    return [each for each in sections if each.pictures or each.tables]
+    return [section for section in sections if section.pictures or section.tables]
 
 
-def _found(folder: Path, patterns: Iterable[str]) -> list[Path]:
+def _matching(folder: Path, patterns: Iterable[str]) -> list[Path]:
     return sorted({path for pattern in patterns for path in folder.glob(pattern)})
 
 
-def _pictures(folder: Path, stems: Iterable[str]) -> list[Picture]:
+def _pictures(folder: Path, stems: Iterable[str]) -> list[EmbeddedPicture]:
     """Of each stem the smaller file, as text of the page."""
     patterns = [f"{stem}{suffix}" for stem in stems for suffix in PICTURES]
-    chosen: dict[str, Path] = {}
-    for path in sorted(_found(folder, patterns), key=lambda path: -path.stat().st_size):
-        if path.stat().st_size <= MOST_BYTES:
-            chosen[path.stem] = path
-    return [_picture(chosen[stem]) for stem in sorted(chosen)]
+    smallest: dict[str, Path] = {}
+    for path in sorted(_matching(folder, patterns), key=lambda path: -path.stat().st_size):
+        if path.stat().st_size <= MOST_PICTURE_BYTES:
+            smallest[path.stem] = path  # the largest come first, so the smallest stays
+    return [_picture(smallest[stem]) for stem in sorted(smallest)]
 
 
-def _picture(path: Path) -> Picture:
+def _picture(path: Path) -> EmbeddedPicture:
     encoded = base64.b64encode(path.read_bytes()).decode()
-    return Picture(path.stem, f"data:{PICTURES[path.suffix]};base64,{encoded}")
+    return EmbeddedPicture(path.stem, f"data:{PICTURES[path.suffix]};base64,{encoded}")
 
 
-def _table(path: Path) -> Table:
+def _table(path: Path) -> CsvTable:
     try:
         with open(path, encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
     except (ValueError, csv.Error) as error:
         raise ConfigError(f"damaged: {error}", where=str(path)) from None
-    more = len(rows) - 1 - MOST_ROWS
-    name = f"{path.name}, {MOST_ROWS} of {len(rows) - 1} rows" if more > 0 else path.name
-    return Table(name, rows[0] if rows else [], rows[1 : MOST_ROWS + 1])
+    more = len(rows) - 1 - MOST_LINES
+    name = f"{path.name}, {MOST_LINES} of {len(rows) - 1} rows" if more > 0 else path.name
+    return CsvTable(name, rows[0] if rows else [], rows[1 : MOST_LINES + 1])

@@ -10,10 +10,10 @@ from simmpp.common.files import write_text
 from simmpp.common.units import counted
 from simmpp.report.page.arrangement import axes_of
 from simmpp.report.page.difference import BEYOND, Difference, line, ranked, summary
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.folder import Folder
-from simmpp.report.page.profit_figures import Shown, profit_figures
-from simmpp.report.page.report import figure_data, rendered
+from simmpp.report.page.profit_figures import ProfitData, profit_figures
+from simmpp.report.page.template import rendered
 from simmpp.run.provenance import difference
 
 MOST_CHANGES = 300
@@ -79,4 +79,4 @@ def _figures(found: Difference) -> list[Figure]:
     if not rows:
         return []
     axes: Mapping[str, Any] = axes_of(rows, found.after.further)
-    return list(profit_figures(Shown(found.after.profits, axes, found.before.profits, marked)))
+    return list(profit_figures(ProfitData(found.after.profits, axes, found.before.profits, marked)))

@@ -7,14 +7,14 @@ from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.plot.plotly_panels import COLOURS, PARTS
+from simmpp.plot.plotly_panels import COLOURS, PART_COLOURS
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.figure import styles_of
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
 from simmpp.sweeps.profits import MEASURES, STATISTICS
 
-EXACT = 2**53
+MOST_EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""
 GAINS = (*(m + s for m in MEASURES for s in STATISTICS), "speedup", "efficiency", "n")
 
@@ -30,7 +30,7 @@ def depth_of(points: Points) -> dict[str, Any]:
         "styles": [style % COLOURS for style in styles_of(profits).values()],
         "accounts": dict(ACCOUNTS),
         "kinds": dict(KINDS),
-        "colours": PARTS,
+        "colours": PART_COLOURS,
         "points": {
             "place": points.groups,
             "name": [_name(points, row) for row in profits],
@@ -62,7 +62,7 @@ def _column(rows: Iterable[Row], name: str) -> list[Any]:
 def _exact(cell: Any) -> Any:
     """What JSON and JavaScript keep: digits of large integers, and infinity, as texts."""
     if isinstance(cell, int):
-        return cell if abs(cell) < EXACT else str(cell)
+        return cell if abs(cell) < MOST_EXACT else str(cell)
     if isinstance(cell, float):
         return round(cell, 9) if words.is_finite(cell) else str(cell)
     return cell

@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page import words
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure of a report."""
+    """Plates of panels under one title; the page shows, and a file holds, one plate at once."""
 
     stem: str
     """Of its files, and its name in the page."""
@@ -34,6 +36,7 @@ class Figure:
         stems: dict[str, str] = {}
         for plate in self.plates:
             stem = "-".join(filter(None, (self.stem, slug(plate))))
+            # Plates such as "a b" and "a-b" have one slug; their files must not be one.
             stems[plate] = stem if stem not in stems.values() else f"{stem}-{len(stems)}"
         return stems
 
@@ -50,8 +53,20 @@ def slug(text: str) -> str:
     return re.sub("[^a-z0-9.]+", "-", text.lower()).strip("-.")[:80]
 
 
+def figure_data(figure: Figure) -> dict[str, Any]:
+    """A figure's plates as plotly draws them."""
+    plates = []
+    for panels in figure.plates.values():
+        title = next((t for t in (getattr(panel, "legend", "") for panel in panels) if t), "")
+        drawings = [drawn(panel) for panel in panels]
+        if len(drawings) == 1:
+            drawings[0]["title"] = ""  # the figure has it
+        plates.append({"title": title, "panels": drawings})
+    return {"plates": plates}
+
+
 def styles_of(rows: Iterable[Row]) -> dict[str, int]:
     """A number for the colour of each policy, the same in all figures; the paper's come first."""
     titles = {row["policy"] for row in rows}
-    others = sorted(titles - words.DATAFLOWS.keys())
-    return {title: n for n, title in enumerate([*words.DATAFLOWS, *others]) if title in titles}
+    others = sorted(titles - words.PAPER_WORDS.keys())
+    return {title: n for n, title in enumerate([*words.PAPER_WORDS, *others]) if title in titles}

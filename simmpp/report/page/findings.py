@@ -141,7 +141,7 @@ def wins(points: Points) -> list[Win]:
     along = abscissas(points.axes)[0]
     curves: dict[str, list[Contest]] = {}
     arrangement = arrange(points.profits, points.axes, along)
-    names = [name for name in points.axes if name in (*arrangement.chosen, arrangement.facet)]
+    names = [name for name in points.axes if name in (*arrangement.plate_axes, arrangement.facet)]
     for each in contests(points):
         of = words.point(points.profits[each.best], names)
         curves.setdefault(of, []).append(each)

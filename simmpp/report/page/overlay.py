@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.curves import Panel
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.report.page.arrangement import axes_of
-from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import numbers_of
-from simmpp.report.page.profit_figures import Shown, profit_figures
+from simmpp.report.page.profit_figures import ProfitData, profit_figures
+from simmpp.report.page.stills import titled
 from simmpp.sweeps.profits import profit_columns
 
 NOTE = "wide and pale: before"
-MOST_PANELS = 48
+MOST_OVERLAID = 48
 """Panels of one picture."""
 
 
@@ -27,7 +27,7 @@ def overlay(
     rows = [*new, *old]
     common = [name for name in rows[0] if name in rows[-1]]
     further = [name for name in common if name not in profit_columns()]
-    figures = profit_figures(Shown(new, axes_of(rows, further), old))
+    figures = profit_figures(ProfitData(new, axes_of(rows, further), old))
     panels = [
         titled(replace(panel, note=NOTE), figure, plate)
         for figure in figures
@@ -35,24 +35,4 @@ def overlay(
         for panel in of_plate
         if isinstance(panel, Panel)
     ]
-    return draw(panels[:MOST_PANELS], stem)
-
-
-# --- every figure of a report as PNG and SVG, for papers and slides ---
-
-
-def write_stills(figures: Iterable[Figure], folder: Path) -> Iterator[list[Path]]:
-    """Write each plate of each figure; what was written is told one by one."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for figure in figures:
-        for plate, panels in figure.plates.items():
-            shown = [titled(panel, figure, plate) for panel in panels]
-            yield draw(shown, folder / figure.files[plate])
-
-
-def titled(panel: Panel | Bars, figure: Figure, plate: str) -> Panel | Bars:
-    """A title that says all, as the file stands alone."""
-    if isinstance(panel, Panel) and panel.title.startswith("Figure"):
-        return panel
-    title = ": ".join(filter(None, (figure.title, ", ".join(filter(None, (plate, panel.title))))))
-    return replace(panel, title=title)
+    return draw(panels[:MOST_OVERLAID], stem)

@@ -15,6 +15,7 @@ from simmpp.sweeps.ratios import CONCURRENT, RAY, Measured, Point
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""
+STEMS = tuple(FIGURES)
 ENOUGH = 3
 """Fractions x that make a curve."""
 

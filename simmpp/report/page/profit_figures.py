@@ -13,7 +13,7 @@ from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange
 from simmpp.report.page.figure import Figure, slug, styles_of
 
 MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
-"""A measure is shown along so many axes; the second has at least so many values, and at most so
+"""A measure is data along so many axes; the second has at least so many values, and at most so
 many plates to choose from."""
 MARGIN = 1.06
 """Factor of room beyond the largest value."""
@@ -23,11 +23,12 @@ TITLES = {
     "speedup": ("Speed-up", "T(1 PE that holds everything) / T(policy)"),
     "efficiency": ("Efficiency", "speed-up / PEs"),
 }
+STEMS = tuple(measure.replace("_", "-") for measure in TITLES)
 PROFITS, OF_MACHINE = ("time_profit", "message_profit"), ("speedup", "efficiency")
 
 
 @dataclass(frozen=True)
-class Shown:
+class ProfitData:
     """The points that figures show, and those of another sweep that they are compared with."""
 
     profits: Sequence[Row]
@@ -42,44 +43,44 @@ class Shown:
         return [*self.profits, *self.before]
 
 
-def profit_figures(shown: Shown) -> Iterator[Figure]:
+def profit_figures(data: ProfitData) -> Iterator[Figure]:
     """Both profits along the best axes; speed-up and efficiency along the number of PEs."""
-    best, *others = abscissas(shown.axes)
-    long = (name for name in others if len(shown.axes[name]) >= ENOUGH and _is_short(shown, name))
+    best, *others = abscissas(data.axes)
+    long = (name for name in others if len(data.axes[name]) >= ENOUGH and _is_short(data, name))
     along = [best, *long][:MOST_ABSCISSAS]
     for measure in PROFITS:
         title, _ = TITLES[measure]
         for name in along:
             several = len(along) > 1
             over = f"{title} over {words.ALONG.get(name, name)}" if several else title
-            yield _figure(shown, measure, name, over, f"-over-{slug(name)}" if several else "")
-    if "processors" in shown.axes:
+            yield _figure(data, measure, name, over, f"-over-{slug(name)}" if several else "")
+    if "processors" in data.axes:
         for measure in OF_MACHINE:
-            name = "processors" if _is_short(shown, "processors") else best
-            yield _figure(shown, measure, name, TITLES[measure][0])
+            name = "processors" if _is_short(data, "processors") else best
+            yield _figure(data, measure, name, TITLES[measure][0])
 
 
-def _is_short(shown: Shown, along: str) -> bool:
+def _is_short(data: ProfitData, along: str) -> bool:
     """Whether a figure along an axis has few plates."""
-    rows = shown.rows
-    return len(plates(rows, arrange(rows, shown.axes, along))) <= MOST_PLATES
+    rows = data.rows
+    return len(plates(rows, arrange(rows, data.axes, along))) <= MOST_PLATES
 
 
-def _figure(shown: Shown, measure: str, along: str, title: str, suffix: str = "") -> Figure:
-    rows = shown.rows
-    arrangement = arrange(rows, shown.axes, along)
-    found = {
-        plate: _panels(shown, panels, measure, arrangement)
+def _figure(data: ProfitData, measure: str, along: str, title: str, suffix: str = "") -> Figure:
+    rows = data.rows
+    arrangement = arrange(rows, data.axes, along)
+    panels_of = {
+        plate: _panels(data, panels, measure, arrangement)
         for plate, panels in plates(rows, arrangement).items()
     }
     numeric = all(map(words.is_number, arrangement.values))
-    spread = "" if shown.before else f", {'bands' if numeric else 'bars'} are 95 % intervals"
+    spread = "" if data.before else f", {'bands' if numeric else 'bars'} are 95 % intervals"
     note = f"{TITLES[measure][1]}; {spread_note(rows, spread)}"
-    return Figure(measure.replace("_", "-") + suffix, title, note, found)
+    return Figure(measure.replace("_", "-") + suffix, title, note, panels_of)
 
 
 def spread_note(profits: Sequence[Row], spread: str) -> str:
-    """What lines and bands are."""
+    """In words, how many seeds a line is the mean of, and what its bands are."""
     least, most = (f(row["n"] for row in profits) for f in (min, max))
     if most < 2:
         return "one seed, so nothing is known of its spread"
@@ -88,7 +89,7 @@ def spread_note(profits: Sequence[Row], spread: str) -> str:
 
 
 def _panels(
-    shown: Shown,
+    data: ProfitData,
     panels: Mapping[str, Sequence[tuple[int, Row]]],
     measure: str,
     arrangement: Arrangement,
@@ -97,10 +98,10 @@ def _panels(
     curves: dict[str, list[Curve]] = {}
     for title, numbered in panels.items():
         placed = [(number, places[row[arrangement.abscissa]], row) for number, row in numbered]
-        curves[title] = list(_curves(shown, placed, measure))
+        curves[title] = list(_curves(data, placed, measure))
     y = _scale(TITLES[measure][0].lower(), chain(*curves.values()))
     level = 1.0 if measure in PROFITS else None
-    return [Panel(title, x, y, found, level=level) for title, found in curves.items()]
+    return [Panel(title, x, y, of_panel, level=level) for title, of_panel in curves.items()]
 
 
 def _scale(label: str, curves: Iterable[Curve]) -> Scale:
@@ -108,8 +109,8 @@ def _scale(label: str, curves: Iterable[Curve]) -> Scale:
     spreads = [spread for curve in curves for spread in curve.points.values()]
     if not spreads:
         return Scale(label)
-    low, high = min(each.low for each in spreads), max(each.high for each in spreads)
-    if low > 0 and words.is_log(each.mean for each in spreads):
+    low, high = min(spread.low for spread in spreads), max(spread.high for spread in spreads)
+    if low > 0 and words.is_log(spread.mean for spread in spreads):
         return Scale(label, is_log=True, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
     return Scale(label, limits=(min(low, 0.0), high * MARGIN))
 
@@ -118,17 +119,17 @@ Placed = tuple[int, float, Row]
 """A point: its number, where it lies on the abscissa, its row."""
 
 
-def _curves(shown: Shown, placed: Sequence[Placed], measure: str) -> Iterator[Curve]:
+def _curves(data: ProfitData, placed: Sequence[Placed], measure: str) -> Iterator[Curve]:
     """One curve for each policy, in the order of their colours; what was before lies behind."""
-    last = len(shown.profits)
-    finite = [each for each in placed if words.is_finite(each[2][measure])]
+    last = len(data.profits)
+    finite = [point for point in placed if words.is_finite(point[2][measure])]
     for is_before in (True, False):
-        for title, style in styles_of(shown.rows).items():
+        for title, style in styles_of(data.rows).items():
             of = [p for p in finite if p[2]["policy"] == title and (p[0] >= last) == is_before]
             if of:
                 points = {x: _spread(row, measure) for _, x, row in of}
                 numbers = {} if is_before else {x: number for number, x, _ in of}
-                marked = shown.marked.get(measure, frozenset())
+                marked = data.marked.get(measure, frozenset())
                 yield Curve(
                     words.policy(title),
                     points,

@@ -1,4 +1,4 @@
-"""``report.html`` of a folder, put together, and its figures as PNG and SVG."""
+"""``report.html`` of a folder: what it shows; written once, or whenever a sweep gets on."""
 
 from __future__ import annotations
 
@@ -9,73 +9,53 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import jinja2
-from markupsafe import Markup
-
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
-from simmpp.plot.plotly_panels import drawn, script
 from simmpp.report.page import words
-from simmpp.report.page.accuracy import accuracy_figures
 from simmpp.report.page.arrangement import abscissas
-from simmpp.report.page.bar_figures import bar_figures
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
+from simmpp.report.page.groups import GROUPS, FigureGroup
 from simmpp.report.page.origin import facts, origin
-from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import Points, points_of
-from simmpp.report.page.profit_figures import Shown, profit_figures
+from simmpp.report.page.template import rendered
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.journal import is_at_work
 from simmpp.sweeps.sweep import RESULTS
 
-PAGE, FIGURES = "report.html", "figures"
-
-
-@dataclass(frozen=True)
-class Group:
-    """A section of figures."""
-
-    id: str
-    name: str
-    text: str
-    figures: Sequence[Figure]
+PAGE = "report.html"
+LOOK_S = 1.0
+"""Seconds between two looks at the tables of a sweep that runs."""
 
 
 @dataclass(frozen=True)
 class Report:
-    """All that a page shows."""
+    """A folder's rows, the points they make, and the figures of these."""
 
     folder: Folder
     points: Points
-    groups: Sequence[Group]
+    groups: Mapping[FigureGroup, Sequence[Figure]]
+    """Those of which there are figures."""
 
     @property
     def figures(self) -> list[Figure]:
-        """Of all sections."""
-        return [figure for group in self.groups for figure in group.figures]
+        """Those of all groups, in the order of the page."""
+        return [figure for figures in self.groups.values() for figure in figures]
 
 
 def report_of(folder: Folder) -> Report:
     """Work out what the rows of a folder show."""
     points = points_of(folder.rows, folder.further, folder.profits)
-    accuracy = Group("accuracy", "Run time against error", "", accuracy_figures(folder.bench))
-    if not any(points.runs):
-        return Report(folder, points, [accuracy] if folder.bench else [])
-    clicking = "Click a point to see it in depth; click a name to hide its curve."
-    paper = paper_figures(folder, points)
-    groups = [
-        Group("paper", "The paper's figures", clicking, paper),
-        Group(
-            "profits", "Profits", clicking, list(profit_figures(Shown(points.profits, points.axes)))
-        ),
-        Group("accounts", "Time and messages", "", list(bar_figures(points))),
-        accuracy,
-    ]
-    return Report(folder, points, [group for group in groups if group.figures])
+    has_runs = any(points.runs)
+    figures = {
+        group: list(group.figures(folder, points))
+        for group in GROUPS
+        if has_runs or not group.of_points
+    }
+    return Report(folder, points, {group: of for group, of in figures.items() if of})
 
 
 def write_page(report: Report, *, is_running: bool = False) -> Path:
@@ -83,6 +63,28 @@ def write_page(report: Report, *, is_running: bool = False) -> Path:
     path = report.folder.path / PAGE
     write_text(rendered("report.html", _values(report, is_running)), path)
     return path
+
+
+def follow(path: Path) -> Iterator[Folder]:
+    """Write the page of what is there, again and again; ends when no sweep works there any more.
+
+    Yields what each page shows; the last one reloads itself no more.
+    """
+    seen = None
+    while is_at_work(path):
+        results = path / RESULTS
+        written = results.stat().st_mtime_ns if results.is_file() else None
+        if written is not None and written != seen:
+            seen = written  # pages of a megabyte are not written again for nothing new
+            yield _write(path, is_running=True)
+        time.sleep(LOOK_S)
+    yield _write(path, is_running=False)
+
+
+def _write(path: Path, *, is_running: bool) -> Folder:
+    folder = read_folder(path)
+    write_page(report_of(folder), is_running=is_running)
+    return folder
 
 
 def _values(report: Report, is_running: bool) -> dict[str, Any]:
@@ -99,7 +101,7 @@ def _values(report: Report, is_running: bool) -> dict[str, Any]:
         "along": {"policy": "", "fraction": "x"}.get(along, along),
         "claims": folder.claims,
         "verdicts": _verdicts(folder),
-        "groups": [(g.id, g.name, g.text, g.figures) for g in report.groups],
+        "groups": [(g.id, g.name, g.text, figures) for g, figures in report.groups.items()],
         "files": not is_running,
         "has_points": any(points.runs),
         "beside": pictures,
@@ -153,74 +155,8 @@ def _data(report: Report, is_running: bool) -> dict[str, Any]:
     }
 
 
-def figure_data(figure: Figure) -> dict[str, Any]:
-    """A figure's plates as plotly draws them."""
-    plates = []
-    for panels in figure.plates.values():
-        title = next((t for t in (getattr(panel, "legend", "") for panel in panels) if t), "")
-        shown = [drawn(panel) for panel in panels]
-        if len(shown) == 1:
-            shown[0]["title"] = ""
-        plates.append({"title": title, "panels": shown})
-    return {"plates": plates}
-
-
 def _first(points: Points) -> int:
     """The point shown before one is chosen: the one that gains most."""
     gains = [row["time_profit"] for row in points.profits]
-    shown = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
-    return max(shown, key=lambda n: float(gains[n]), default=0)
-
-
-# --- HTML from templates: everything that comes from rows is escaped ---
-
-
-ASSETS = "assets"
-
-
-def rendered(template: str, values: Mapping[str, Any]) -> str:
-    """A page that needs nothing else: styles, scripts and data are in it."""
-    loader = jinja2.PackageLoader(__name__.rpartition(".")[0], ASSETS)
-    environment = jinja2.Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
-
-    def asset(name: str) -> Markup:
-        return Markup(environment.get_template(name).render())
-
-    return environment.get_template(template).render(**values, asset=asset, plotly=Markup(script()))
-
-
-# --- the page of a sweep while it runs: written again whenever its tables are ---
-
-
-LOOK_S = 1.0
-"""Seconds between two looks at the tables."""
-
-
-def follow(path: Path) -> Iterator[Folder]:
-    """Write the page of what is there, again and again; ends when no sweep works there any more.
-
-    Yields what each page shows; the last one reloads itself no more.
-    """
-    seen = None
-    while is_at_work(path):
-        results = path / RESULTS
-        written = results.stat().st_mtime_ns if results.is_file() else None
-        if written is not None and written != seen:
-            seen = written
-            yield _write(path, is_running=True)
-        time.sleep(LOOK_S)
-    yield _write(path, is_running=False)
-
-
-def _write(path: Path, *, is_running: bool) -> Folder:
-    folder = read_folder(path)
-    write_page(report_of(folder), is_running=is_running)
-    return folder
+    finite = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
+    return max(finite, key=lambda n: float(gains[n]), default=0)

@@ -6,10 +6,9 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from simmpp.plot.curves import Scale
-from simmpp.studies.nebel98.figures import ON_EACH_PE, PERCENT
+from simmpp.plot.curves import ON_EACH_PE, PERCENT, Scale
 
-DATAFLOWS = {
+PAPER_WORDS = {
     "object": "object dataflow",
     "ray": "ray dataflow",
     "concurrent": "concurrent dataflow",
@@ -25,8 +24,8 @@ WIDE = 0.5
 
 
 def policy(title: str) -> str:
-    """``"ray"`` -> ``"ray dataflow"``."""
-    return DATAFLOWS.get(title, title)
+    """A policy as the paper calls it: ``"ray"`` -> ``"ray dataflow"``."""
+    return PAPER_WORDS.get(title, title)
 
 
 def value(name: str, cell: Any) -> str:
@@ -61,16 +60,16 @@ def point(keys: Mapping[str, Any], names: Iterable[str]) -> str:
 
 def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
     """The axis of a key, and where on it each of its values lies; texts lie side by side."""
-    if not all(is_number(each) for each in values):
-        places = {each: float(n) for n, each in enumerate(values)}
-        names = tuple(label(name, each) for each in values)
+    if not all(map(is_number, values)):
+        places = {cell: float(n) for n, cell in enumerate(values)}
+        names = tuple(label(name, cell) for cell in values)
         title = name if name not in ("policy", "scene") else ""
         return Scale(title, ticks=(*places.values(),), names=names), places
     if name == "fraction":
         wide = max(values) >= WIDE
         scale = ON_EACH_PE if wide else Scale(ON_EACH_PE.label)
-        return scale, {each: each * PERCENT for each in values}
-    places = {each: float(each) for each in values}
+        return scale, {share: share * PERCENT for share in values}
+    places = {number: float(number) for number in values}
     if name == "processors":
         ticks = (*places.values(),)
         return Scale("processing elements (PEs)", is_log=True, ticks=ticks), places
@@ -84,8 +83,8 @@ def is_number(cell: Any) -> bool:
 
 def is_log(values: Iterable[float]) -> bool:
     """Whether values are better shown on a logarithmic axis."""
-    found = [each for each in values if math.isfinite(each)]
-    return bool(found) and min(found) > 0 and max(found) > LOG_FROM * min(found)
+    finite = [number for number in values if math.isfinite(number)]
+    return bool(finite) and min(finite) > 0 and max(finite) > LOG_FROM * min(finite)
 
 
 def is_finite(cell: Any) -> bool:

@@ -20,7 +20,7 @@ from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
 
 BLUE, VERMILION, GREEN, _, ORANGE, *_ = (style["color"] for style in STYLES)
-COMPUTE, COMMUNICATION, WAITING = BLUE, ORANGE, "#EDEDED"
+COMPUTE_COLOUR, COMMUNICATION_COLOUR, WAITING_COLOUR = BLUE, ORANGE, "#EDEDED"
 """Of Okabe and Ito (2008); waiting is light: both colours stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
@@ -74,7 +74,11 @@ def _activity(figure: Figure, motion: Motion) -> None:
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
 
 
-_ACTIVITIES = {"compute_ps": COMPUTE, "communication_ps": COMMUNICATION, "waiting_ps": WAITING}
+_ACTIVITIES = {
+    "compute_ps": COMPUTE_COLOUR,
+    "communication_ps": COMMUNICATION_COLOUR,
+    "waiting_ps": WAITING_COLOUR,
+}
 
 
 def _mixed(motion: Motion) -> NDArray[np.float64]:
@@ -139,11 +143,11 @@ def _traffic(figure: Figure, motion: Motion) -> None:
         style = STYLES[kind] | {"linestyle": "none", "markersize": 5}
         if len(there):
             sizes.plot(there, counts[there], label=MESSAGE_KINDS[kind], **style)
-    shown = np.flatnonzero(motion.sizes.any(axis=0))
-    if len(shown):
+    powers = np.flatnonzero(motion.sizes.any(axis=0))
+    if len(powers):
         sizes.set_yscale("log")
-        sizes.set_xticks(shown, [_bytes_below(int(d)) for d in shown], fontsize=7)
-        sizes.set(xlim=(shown[0] - 0.7, shown[-1] + 0.7), ylim=(0.7, 3 * motion.sizes.max()))
+        sizes.set_xticks(powers, [_bytes_below(int(d)) for d in powers], fontsize=7)
+        sizes.set(xlim=(powers[0] - 0.7, powers[-1] + 0.7), ylim=(0.7, 3 * motion.sizes.max()))
         sizes.legend(frameon=False, fontsize=7)
     sizes.grid(axis="y", color="0.9")
     sizes.set(xlabel="bytes with header, less than", ylabel="messages")
@@ -195,10 +199,10 @@ def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -
     figure.set_size_inches(13, 3.4) if picture is not None else figure.set_size_inches(10, 3.4)
     axes = list(figure.subplots(1, 3 if picture is None else 4))
     if picture is not None:
-        shown = axes.pop(0)
-        shown.imshow(picture, interpolation="nearest")
-        shown.set_title("picture")
-        shown.set_axis_off()
+        rendered = axes.pop(0)
+        rendered.imshow(picture, interpolation="nearest")
+        rendered.set_title("picture")
+        rendered.set_axis_off()
     maps = {
         "cost (us)": (motion.pixel_cost_ps / 1e6, AMOUNTS),
         "links crossed for its rays": (motion.pixel_hops, AMOUNTS),

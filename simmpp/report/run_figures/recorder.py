@@ -11,8 +11,9 @@ from simmpp.common.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.run_figures.data import motion_of
 from simmpp.run.point import Point, PolicyRun
+from simmpp.workload.trace.shading import render
 
-MOST_PROCESSORS = 2048
+MOST_DRAWN_PES = 2048
 
 
 class FiguresRecorder:
@@ -21,15 +22,15 @@ class FiguresRecorder:
     needs_counters = True
 
     def __init__(self, folder: Path, point: Point) -> None:
-        if point.machine.processors > MOST_PROCESSORS:
-            problem = f"expected at most {MOST_PROCESSORS} processors: who sent to whom is a matrix"
+        if point.machine.processors > MOST_DRAWN_PES:
+            problem = f"expected at most {MOST_DRAWN_PES} processors: who sent to whom is a matrix"
             raise ConfigError(problem, where="--figures")
         self._folder = folder
         self._point = point
         self._picture = _picture(point)
 
     def begin(self, policy: PolicyParameters) -> None:
-        """No event log is needed."""
+        """Ask for no event log: the counters of a run are enough for its pictures."""
 
     def end(self, run: PolicyRun) -> None:
         """A run is over: draw it."""
@@ -40,9 +41,5 @@ class FiguresRecorder:
 
 def _picture(point: Point) -> NDArray[np.uint8] | None:
     """What was rendered, if there is a scene and not only its rays."""
-    if point.config.settings.scene.workload is not None:
-        return None
-    from simmpp.scene.load import load_scene
-    from simmpp.workload.trace.shading import render
-
-    return render(load_scene(point.config.scene_spec), point.config.picture, point.workload)
+    load_scene = point.config.ray_source.scene
+    return load_scene and render(load_scene(), point.config.picture, point.workload)

@@ -8,19 +8,19 @@ from typing import Protocol
 from simmpp.engine.record.log import Sink
 from simmpp.machine.machine import Machine
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.timeline.slices import Part, Rows, Timeline, Window
+from simmpp.report.timeline.slices import Rows, Timeline, TimelinePart, Window
 from simmpp.run.point import PolicyRun
 
 SUFFIXES = (".json", ".json.gz", ".parquet")
 
 
 class TimelineFile(Protocol):
-    """A format."""
+    """A file that timelines go into, run after run, part after part."""
 
     def begin(self, title: str, processors: int) -> None:
         """What is written from now on is the run of this policy."""
 
-    def add(self, part: Part) -> None:
+    def add(self, part: TimelinePart) -> None:
         """Write a part of the timeline."""
 
     def close(self) -> None:

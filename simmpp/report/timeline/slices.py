@@ -39,8 +39,8 @@ class Window:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
-    """A stretch of a timeline."""
+class TimelinePart:
+    """A stretch of a timeline: what some rows of the event log add to it."""
 
     slices: Rows
     """(n,) EVENT without arrivals, with IDLE and PROBE; those of a PE touch one another."""
@@ -69,24 +69,24 @@ class Timeline:
         self._in_flight = 0
         self._packed = np.zeros((2, 0), np.int64)
 
-    def add(self, rows: Rows) -> Part:
+    def add(self, rows: Rows) -> TimelinePart:
         """The part that more rows of the event log make."""
         arrived = rows["event"] == ARRIVAL
         return self._part(self._filled(rows[~arrived]), rows[arrived])
 
-    def end(self, makespan_ps: int) -> Part:
+    def end(self, makespan_ps: int) -> TimelinePart:
         """The last part: idle to the end."""
         idle = np.flatnonzero(self._ended_ps < makespan_ps)
         rows = _idle_rows(idle, self._ended_ps[idle], np.full(len(idle), makespan_ps))
         return self._part(rows, np.zeros(0, EVENT))
 
-    def _part(self, slices: Rows, arrivals: Rows) -> Part:
+    def _part(self, slices: Rows, arrivals: Rows) -> TimelinePart:
         flights_ps, in_flight = self._flights(slices, arrivals)
         loads = self._changed(slices)
         slices = self._cut(slices)
         arrows, tails_ps = self._arrows(slices)
         arrivals = arrivals[self._window.holds(arrivals["time_ps"])]
-        return Part(slices, arrivals, loads, arrows, tails_ps, flights_ps, in_flight)
+        return TimelinePart(slices, arrivals, loads, arrows, tails_ps, flights_ps, in_flight)
 
     def _filled(self, work: Rows) -> Rows:
         """Work with what lies between: idle time, and the probes that computations begin with."""
@@ -100,6 +100,7 @@ class Timeline:
         probes["event"], probes["end_ps"] = PROBE, work["time_ps"][probing]
         probes["tests"] = probes["rays"] = 0
         probes["load"] = probes["ready"] = NONE  # not known in between
+        # Row n of the work is at 3 n + 2, its probe at 3 n + 1, the idle time before at 3 n.
         places = (3 * gaps, 3 * probing + 1, 3 * np.arange(len(work)) + 2)
         order = np.argsort(np.concatenate(places))
         filled: Rows = np.concatenate([idle, probes, work])[order]
@@ -107,12 +108,12 @@ class Timeline:
 
     def _changed(self, slices: Rows) -> Rows:
         """Slices in the window that left the PE with other rays than it had before."""
-        known = slices[slices["load"] != NONE]
+        loaded = slices[slices["load"] != NONE]
         same = [
-            _before(known["pe"], known[name].astype(np.int64), last) == known[name]
+            _before(loaded["pe"], loaded[name].astype(np.int64), last) == loaded[name]
             for name, last in zip(("load", "ready"), self._held, strict=True)
         ]
-        changed: Rows = known[~(same[0] & same[1]) & self._window.holds(known["end_ps"])]
+        changed: Rows = loaded[~(same[0] & same[1]) & self._window.holds(loaded["end_ps"])]
         return changed
 
     def _cut(self, slices: Rows) -> Rows:
@@ -133,12 +134,13 @@ class Timeline:
         packed = np.array([_keys(sent["pe"], sent["number"]), sent["time_ps"]], np.int64)
         packed = np.concatenate([self._packed, packed], axis=1)
         packed = packed[:, np.argsort(packed[0])]
-        wanted = _keys(received["other"], received["number"])
-        found = np.searchsorted(packed[0], wanted)
-        has_tail = np.append(packed[0], NONE)[found] == wanted
-        found = found[has_tail]
-        tails_ps = packed[1, found]
-        self._packed = np.delete(packed, found, axis=1)
+        keys = _keys(received["other"], received["number"])
+        places = np.searchsorted(packed[0], keys)
+        # A message that was sent before the window has no tail in it, and so no arrow.
+        has_tail = np.append(packed[0], NONE)[places] == keys
+        places = places[has_tail]
+        tails_ps = packed[1, places]
+        self._packed = np.delete(packed, places, axis=1)
         return received[has_tail], tails_ps
 
     def _flights(self, slices: Rows, arrivals: Rows) -> tuple[Times, Times]:
@@ -150,6 +152,7 @@ class Timeline:
         times_ps = times_ps[order]
         in_flight = self._in_flight + np.cumsum(changes[order])
         self._in_flight = int(in_flight[-1]) if len(in_flight) else self._in_flight
+        # Of several changes at one instant only the number after the last is ever seen.
         is_last = np.diff(times_ps, append=NONE) != 0
         is_last &= self._window.holds(times_ps)
         return times_ps[is_last], in_flight[is_last]

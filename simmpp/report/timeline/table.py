@@ -12,7 +12,7 @@ from pyarrow import parquet
 
 from simmpp.engine.arrays.layout import NONE
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.report.timeline.slices import SLICE_KINDS, Part, Rows
+from simmpp.report.timeline.slices import SLICE_KINDS, Rows, TimelinePart
 
 _WORD = pa.dictionary(pa.int8(), pa.string())
 SCHEMA = pa.schema(
@@ -47,14 +47,14 @@ class TimelineTable:
         """What is written from now on is the run of this policy."""
         self._policies.append(title)
 
-    def add(self, part: Part) -> None:
+    def add(self, part: TimelinePart) -> None:
         """Write a part of the timeline."""
         for rows in (part.slices, part.arrivals):
             if len(rows):
                 self._writer.write_table(self._table(rows))
 
     def close(self) -> None:
-        """End the file."""
+        """End the file, which Parquet needs to be readable."""
         self._writer.close()
 
     def _table(self, rows: Rows) -> pa.Table:

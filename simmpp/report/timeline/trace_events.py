@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 
 from simmpp.engine.arrays.layout import COMPUTE, NONE
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.report.timeline.slices import COMMUNICATION, IDLE, SLICE_KINDS, Part, Rows, Times
+from simmpp.report.timeline.slices import (
+    COMMUNICATION,
+    IDLE,
+    SLICE_KINDS,
+    Rows,
+    TimelinePart,
+    Times,
+)
 
 PS_PER_US = 10**6
 _NAMES = [f"{event} {kind}".rstrip() for event in SLICE_KINDS for kind in (*MESSAGE_KINDS, "")]
@@ -55,7 +62,7 @@ class TraceEvents:
         event = {"ph": "M", "pid": self._process, "tid": pe + 1, "name": what}
         self._append(f",\n{json.dumps(event | {'args': {'name': name}})}".encode())
 
-    def add(self, part: Part) -> None:
+    def add(self, part: TimelinePart) -> None:
         """Write a part of the timeline."""
         slices, loads, arrows = part.slices, part.loads, part.arrows
         self._events(len(slices), self._slices(slices))
@@ -75,6 +82,7 @@ class TraceEvents:
         track = [f'"pid":{self._process},"tid":', _whole(rows["pe"] + 1), ',"ts":']
         return [
             '{"ph":"B",', *track, _us(rows["time_ps"]),
+            # Kind NONE, -1, is 4 modulo 5: the name without a kind, behind those of four kinds.
             ',"name":"', pa.array(_NAMES).take(rows["event"] * 5 + rows["kind"] % 5),
             '","cat":"', pa.array(_CATEGORIES).take(rows["event"]),
             '"', _arguments(rows), '},\n{"ph":"E",', *track, _us(rows["end_ps"]), "}",

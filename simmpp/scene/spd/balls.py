@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
+from simmpp.scene.scene import Vector
 from simmpp.scene.spd.transform import (
     IDENTITY,
     SKY_BLUE,
     Matrix,
-    Vector,
     rotation_about,
     rotation_y,
     rotation_z,
@@ -76,6 +76,8 @@ def _flake(
     turn = _from_z_to(direction)
     reach = radius * (4 / 3)
     for v in nine:
+        # The direction is taken back from the rounded child, and thirds are products with a rounded
+        # 1/3, as in the SPD: its files print the digits in which these differ.
         dx, dy, dz = transform(v, turn)
         child = (centre[0] + dx * reach, centre[1] + dy * reach, centre[2] + dz * reach)
         towards = (

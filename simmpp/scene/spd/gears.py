@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
-from simmpp.scene.spd.transform import SKY_BLUE, Vector
+from simmpp.scene.scene import Vector
+from simmpp.scene.spd.transform import SKY_BLUE
 
 TEETH = 36
 PITCH = 2 * math.pi / TEETH

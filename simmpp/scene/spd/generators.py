@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from simmpp.common.errors import ConfigError
+from simmpp.scene.nff import read_nff
+from simmpp.scene.scene import Scene
 from simmpp.scene.spd import balls, gears, jacks, lattice, mountain, rings, tetra, tree
 
 MAX_OBJECTS = 1_000_000
@@ -92,11 +94,18 @@ def find_generator(name: str) -> Generator:
 def nff(name: str, size: int | None = None) -> str:
     """NFF text of the scene ``name`` at ``size`` (default: the SPD's own size)."""
     generator = find_generator(name)
-    chosen = generator.default_size if size is None else size
-    generator.check(chosen)
-    return generator.nff(chosen)
+    size = generator.default_size if size is None else size
+    generator.check(size)
+    return generator.nff(size)
+
+
+def load_spd(name: str, size: int | None = None) -> Scene:
+    """The scene of that text, read as a file would be: both ways in are one scene."""
+    generator = find_generator(name)
+    label = f"{generator.name}:{generator.default_size if size is None else size}"
+    return read_nff(nff(name, size), name=label, where=label)
 
 
 def known_names() -> list[str]:
-    """All names and aliases."""
+    """All names and aliases, as ``scene.spd`` takes them."""
     return [name for g in GENERATORS.values() for name in (g.name, *g.aliases)]

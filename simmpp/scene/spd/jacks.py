@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
+from simmpp.scene.scene import Vector
 from simmpp.scene.spd.transform import (
     Matrix,
-    Vector,
     product,
     rotation_x,
     rotation_y,

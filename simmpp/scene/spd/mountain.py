@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
+from simmpp.scene.scene import Vector
 from simmpp.scene.spd.transform import (
     SKY_BLUE,
-    Vector,
     product,
     rotation_about,
     rotation_z,

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 
-Vector = tuple[float, float, float]
-Row = tuple[float, float, float, float]
-Matrix = tuple[Row, Row, Row, Row]
+from simmpp.scene.scene import Vector
+
+MatrixRow = tuple[float, float, float, float]
+Matrix = tuple[MatrixRow, MatrixRow, MatrixRow, MatrixRow]
 
 IDENTITY: Matrix = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
 SKY_BLUE: Vector = (0.078, 0.361, 0.753)
@@ -62,7 +63,7 @@ def translation(x: float, y: float, z: float) -> Matrix:
 def product(a: Matrix, b: Matrix) -> Matrix:
     """``a`` first, then ``b``."""
 
-    def row(i: int) -> Row:
+    def row(i: int) -> MatrixRow:
         p, q, r, t = a[i]
         x, y, z, w = (p * b[0][j] + q * b[1][j] + r * b[2][j] + t * b[3][j] for j in range(4))
         return x, y, z, w

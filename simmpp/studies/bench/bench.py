@@ -21,7 +21,6 @@ from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.registry import DEFAULT_POLICY
 from simmpp.run.point import REFERENCE
 from simmpp.run.provenance import result_versions
-from simmpp.scene.load import load_scene
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
 from simmpp.studies.bench.figure import bench_panels
 from simmpp.studies.nebel98.figures import NAMES
@@ -118,9 +117,10 @@ def _time_tracing(full: Plan, journal: Journal, watcher: Watcher) -> None:
     firsts = {each.task.digest: each for each in reversed(full.points)}
     for digest, first in firsts.items():
         config = first.point.config
-        if digest in journal.trace_s or config.settings.scene.workload is not None:
+        load_scene = config.ray_source.scene
+        if digest in journal.trace_s or load_scene is None:
             continue
-        scene = load_scene(config.scene_spec)
+        scene = load_scene()
         trace(scene, Picture(resolution=FEW_PIXELS))  # compiles, or loads what was compiled
         began_s = time.process_time()
         trace(scene, config.picture, progress=partial(watcher.tracing, first.scene))

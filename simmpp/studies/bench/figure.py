@@ -42,6 +42,6 @@ def _curve(rungs: Sequence[Rung], label: str, method: str, measure: str) -> Curv
     points = {rung.seconds: Spread(*[rung.error[measure]] * 3) for rung in of_method}
     if method != SIMULATE:
         said = {rung.seconds: SHORT.get(method, method) for rung in of_method}
-        return Curve(label, points, said=said)
+        return Curve(label, points, notes=said)
     said = {rung.seconds: f"{rung.seeds}" for rung in of_method}
-    return Curve(label, points, said=said, floor=of_method[0].resolution[measure])
+    return Curve(label, points, notes=said, floor=of_method[0].resolution[measure])

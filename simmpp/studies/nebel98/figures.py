@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from simmpp.plot.curves import Curve, Panel, Scale, Spread, Stated, curve
+from simmpp.plot.curves import ON_EACH_PE, PERCENT, Curve, Panel, Scale, Spread, Stated, curve
 from simmpp.studies.nebel98.claims_concurrent import (
     ACCELERATION,
     FEW,
@@ -28,7 +28,6 @@ from simmpp.sweeps.ratios import (
     Ratios,
 )
 
-PERCENT = 100
 NAMES = {
     "mountain:5": "Mountain5",
     "rings:1": "Ring1",
@@ -37,7 +36,6 @@ NAMES = {
     "tetra:6": "Tetrahedron6",
 }
 """The paper's names of scenes."""
-ON_EACH_PE = Scale("objects resident on each PE (% of the scene)", ticks=(0, 20, 40, 60, 80, 100))
 ACCELERATIONS = (1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 """Divisions of figure 6's axis."""
 FRACTIONS_OF_6 = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0)

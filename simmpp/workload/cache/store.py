@@ -1,40 +1,41 @@
-"""Workloads on disk: one uncompressed npz each, checked when read, kept in the user's cache."""
+"""Workloads on disk: one Arrow file each, checked when read, kept in the user's cache.
+
+The arrays of a workload that is read are the file's own pages, so processes of a sweep share one
+copy in memory. The file is a table of one row: each array is a list in a cell, aligned as Arrow
+aligns it; the rest stands as JSON in the schema's metadata.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import dataclasses
-import hashlib
+import json
 import os
 import tempfile
 import warnings
-import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import cache_folder
 from simmpp.common.errors import WorkloadError
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
-from simmpp.workload.cache.aligned_npz import map_arrays, write_aligned
 from simmpp.workload.check import check
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.tracer import Progress, trace
-from simmpp.workload.workload import Workload, frozen
+from simmpp.workload.workload import ARRAYS, Workload, frozen
 
-TEXTS = ("name", "digest", "picture")
-"""Fields of a workload that are no arrays; they are stored in ``header``."""
-DAMAGED = (
-    *(OSError, ValueError, KeyError, EOFError, TypeError),
-    *(RuntimeError, zipfile.BadZipFile, zlib.error),  # such as an encrypted or a compressed member
-)
-"""What numpy and zipfile raise for a file that isn't, or is no longer, an npz of arrays."""
+HEADER = b"workload"
+"""Key of the metadata: name, digest, picture and, for each array, its shape and its CRC-32."""
+DAMAGED = (OSError, ValueError, KeyError, TypeError, IndexError, pa.ArrowException)
+"""What Arrow, JSON and numpy raise for a file that isn't, or is no longer, such a table."""
 
 
 def workload_for(
@@ -68,20 +69,23 @@ def workload_for(
 
 
 def save(workload: Workload, path: str | os.PathLike[str]) -> None:
-    """Write ``workload`` to ``path``, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        The file can't be written.
-    """
-    arrays = {name: getattr(workload, name) for name in _array_names()}
-    header = [workload.name, workload.digest, *map(str, workload.picture), _checksum(arrays)]
+    """Write ``workload`` to ``path``, whole or not at all; OSError if it can't be written."""
+    arrays = {name: np.ascontiguousarray(getattr(workload, name)) for name in ARRAYS}
+    header: dict[str, Any] = {
+        "name": workload.name,
+        "digest": workload.digest,
+        "picture": workload.picture,
+        "shapes": {name: array.shape for name, array in arrays.items()},
+    }
+    header["checksum"] = _checksum(header, arrays)
+    row = pa.RecordBatch.from_arrays(list(map(_cell, arrays.values())), list(arrays))
+    schema = row.schema.with_metadata({HEADER: json.dumps(header)})
     target = Path(path)
+    # Workers may write the same workload at once: each its own file, and the last one stays.
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
     try:
-        with os.fdopen(handle, "wb") as file:
-            write_aligned(file, {"header": np.array(header), **arrays})
+        with os.fdopen(handle, "wb") as file, pa.ipc.new_file(file, schema) as writer:
+            writer.write_batch(row.replace_schema_metadata(schema.metadata))
         os.replace(temporary, target)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -91,52 +95,44 @@ def save(workload: Workload, path: str | os.PathLike[str]) -> None:
 
 def cached_path(digest: str) -> Path:
     """Where the workload of that digest is cached, if it is."""
-    return cache_folder() / f"{digest}.npz"
+    return cache_folder() / f"{digest}.arrow"
 
 
 def load(path: str | os.PathLike[str]) -> Workload:
-    """Read a workload that :func:`save` has written.
+    """The workload that :func:`save` has written; its arrays are read-only pages of the file.
 
-    Raises
-    ------
-    WorkloadError
-        The file can't be read, is damaged, is no workload, or contradicts itself.
+    Raises WorkloadError for a file that can't be read, is damaged, is no workload, or contradicts
+    itself.
     """
-    workload, checksum = _read(path, _arrays)
-    if checksum != _checksum({name: getattr(workload, name) for name in _array_names()}):
-        raise WorkloadError("damaged: its checksum does not fit", where=str(path))
-    check(workload, str(path))
-    return workload
-
-
-def open_workload(path: str | os.PathLike[str]) -> Workload:
-    """Like :func:`load`, but the arrays are the file's own pages: processes share them.
-
-    Damage is noticed by the archive's CRC-32, which takes a tenth of the time of SHA-256.
-    """
-    workload, _ = _read(path, map_arrays)
-    check(workload, str(path))
-    return workload
-
-
-def _read(
-    path: str | os.PathLike[str], read: Callable[[Path], dict[str, NDArray[Any]]]
-) -> tuple[Workload, str]:
-    """A workload file as it is, and the checksum that it says."""
     try:
-        arrays = read(Path(path))
-        name, digest, rows, columns, checksum = map(str, arrays.pop("header"))
-        picture = int(rows), int(columns)
-        arrays = {name: arrays[name] for name in _array_names()}
+        with pa.memory_map(os.fspath(path)) as file:
+            row = pa.ipc.open_file(file).get_batch(
+                0
+            )  # keeps the pages mapped when the file is shut
+        row.validate(full=True)  # no array reaches beyond the file
+        header = json.loads(row.schema.metadata[HEADER])
+        shapes, checksum = header["shapes"], header.pop("checksum")
+        arrays = {name: _array(row[name]).reshape(shapes[name]) for name in ARRAYS}
+        if checksum != _checksum(header, arrays):
+            raise ValueError("damaged, its checksum does not fit")
+        rows, columns = header["picture"]
+        workload = Workload(header["name"], header["digest"], (rows, columns), **arrays)
     except DAMAGED as error:
-        problem = error.strerror if isinstance(error, OSError) and error.strerror else error
+        problem = " ".join(str(error).split())[:200]
         raise WorkloadError(f"not a workload: {problem}", where=str(path)) from None
-    return frozen(Workload(name=name, digest=digest, picture=picture, **arrays)), checksum
+    check(workload, str(path))
+    return frozen(workload)
 
 
-def _arrays(path: Path) -> dict[str, NDArray[Any]]:
-    with np.load(path, allow_pickle=False) as file:
-        return {name: file[name] for name in ("header", *_array_names())}
+def _cell(array: NDArray[Any]) -> pa.Array:
+    """All entries of an array as one list."""
+    return pa.LargeListArray.from_arrays(pa.array([0, array.size], pa.int64()), array.ravel())
+
+
+def _array(column: pa.Array) -> NDArray[Any]:
+    """The entries of that list where they lie."""
+    array: NDArray[Any] = column.flatten().to_numpy(zero_copy_only=True)
+    return array
 
 
 def _expected(workload: Workload, digest: str, path: Path) -> Workload:
@@ -145,15 +141,9 @@ def _expected(workload: Workload, digest: str, path: Path) -> Workload:
     return workload
 
 
-def _array_names() -> list[str]:
-    return [field.name for field in dataclasses.fields(Workload) if field.name not in TEXTS]
-
-
-def _checksum(arrays: dict[str, np.ndarray]) -> str:
-    """SHA-256 of names, types, shapes and bytes, the same on every byte order."""
-    digest = hashlib.sha256()
-    for name in sorted(arrays):
-        array = np.ascontiguousarray(arrays[name])
-        digest.update(f"{name} {array.dtype.str[1:]} {array.shape}".encode())
-        digest.update(array.astype(array.dtype.newbyteorder("<"), copy=False).data)
-    return digest.hexdigest()
+def _checksum(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> int:
+    """CRC-32 of all there is; SHA-256 would take ten times as long, longer than to read it."""
+    checksum = zlib.crc32(json.dumps(header).encode())
+    for array in arrays.values():
+        checksum = zlib.crc32(array.data, zlib.crc32(array.dtype.str.encode(), checksum))
+    return checksum

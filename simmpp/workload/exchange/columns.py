@@ -13,11 +13,17 @@ from numpy.typing import NDArray
 from simmpp.common.errors import WorkloadError
 from simmpp.scene.nff_words import LARGEST
 
+WORKLOAD_SUFFIXES = (".parquet", ".npz")
 Column = NDArray[Any]
 MOST_ROWS = 2**31 - 2
 """Rays, and objects, are numbered by int32; offsets have one more entry."""
 LONGEST_WORD = 20
 """Characters kept of a word: enough to tell it in an error."""
+
+
+def is_workload(name: str) -> bool:
+    """Whether a file's name says that it holds the rays of a workload."""
+    return name.lower().endswith(WORKLOAD_SUFFIXES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +100,10 @@ class Table:
                 np.uint8
             )
         self.require(np.isin(column, words), name, f"one of {_list(words)}")
-        chosen = np.zeros(self.rows, np.uint8)
+        indices = np.zeros(self.rows, np.uint8)
         for index, word in enumerate(words):
-            chosen[column == word] = index
-        return chosen
+            indices[column == word] = index
+        return indices
 
 
 def _list(words: Sequence[str]) -> str:

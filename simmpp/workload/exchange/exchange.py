@@ -19,13 +19,19 @@ from simmpp.common.errors import WorkloadError
 from simmpp.common.units import LONGEST_PS
 from simmpp.workload.check import check
 from simmpp.workload.exchange import npz
-from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.columns import (
+    MOST_ROWS,
+    WORKLOAD_SUFFIXES,
+    Column,
+    Table,
+    Tables,
+    is_workload,
+)
 from simmpp.workload.exchange.rays import rays_of
 from simmpp.workload.workload import MESH, OBJECT_KINDS, RAY_KINDS, Workload, frozen
 
-SUFFIXES = (".parquet", ".npz")
 OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
-MOST_BYTES = 2**40
+MOST_OBJECT_BYTES = 2**40
 """A TiB for one object; the sum of all stays far from the end of int64."""
 UNREADABLE = (
     *(OSError, ValueError, TypeError, KeyError, EOFError, MemoryError, OverflowError),
@@ -43,6 +49,7 @@ def import_workload(path: str | os.PathLike[str]) -> Workload:
     tables = _read(path)
     arrays = rays_of(tables.rays, tables.objects.rows) | _objects_of(tables.objects)
     picture = _picture(tables, int((arrays["parents"] < 0).sum()))
+    # Of what was read, not of the file: the same rays in Parquet and in npz are one workload.
     digest = hashlib.sha256(repr(picture).encode())
     for name in sorted(arrays):
         digest.update(f"{name} {arrays[name].shape}".encode())
@@ -61,7 +68,7 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
     written.
     """
     path = Path(path)
-    prefixes = (npz.RAY, npz.OBJECT) if _is_npz(path) else ("", "")
+    prefixes = (npz.RAY_PREFIX, npz.OBJECT_PREFIX) if _is_npz(path) else ("", "")
     finite = np.isfinite(workload.hit_distances)
     x, y, z = workload.object_centroids.T
     rays: dict[str, Column] = {
@@ -88,11 +95,6 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
     _format(path).write(tables, path)
 
 
-def is_workload(name: str) -> bool:
-    """Whether a file's name says that it holds a workload."""
-    return name.lower().endswith(SUFFIXES)
-
-
 def _is_npz(path: Path) -> bool:
     return path.suffix.lower() == ".npz"
 
@@ -100,7 +102,7 @@ def _is_npz(path: Path) -> bool:
 def _format(path: Path) -> Any:
     """The module that reads and writes such files."""
     if not is_workload(path.name):
-        raise WorkloadError(f"expected a file {' or '.join(SUFFIXES)}", where=str(path))
+        raise WorkloadError(f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}", where=str(path))
     if _is_npz(path):
         return npz
     from simmpp.workload.exchange import parquet  # pyarrow takes a third of a second
@@ -125,9 +127,9 @@ def _objects_of(table: Table) -> dict[str, NDArray[Any]]:
     """The fields of a workload that hold objects."""
     table.known(OBJECT_COLUMNS, required=("bytes",))
     mesh = np.full(table.rows, MESH, np.uint8)
-    sizes = table.integers("bytes", 0, MOST_BYTES, 0, "a size from 0 to 2^40 bytes")
+    sizes = table.integers("bytes", 0, MOST_OBJECT_BYTES, 0, "a size from 0 to 2^40 bytes")
     costs = table.integers("test_ps", 0, LONGEST_PS, 0, "a time from 0 to 10 s in picoseconds")
-    if sizes.sum(dtype=np.float64) > MOST_BYTES * 2.0**20:
+    if sizes.sum(dtype=np.float64) > MOST_OBJECT_BYTES * 2.0**20:
         table.fail("bytes", "the sum is beyond 2^60")
     return {
         "object_kinds": table.choices("kind", OBJECT_KINDS, mesh),
@@ -146,9 +148,9 @@ def _picture(tables: Tables, n_primaries: int) -> tuple[int, int]:
     whole = sides.dtype.kind in "iu" and sides.shape == (2,) and (sides > 0).all()
     rows, columns = (int(side) for side in sides) if whole else (0, 0)
     if rows * columns != n_primaries:
-        shown = " ".join(map(str, sides.tolist()))[:40]
+        text = " ".join(map(str, sides.tolist()))[:40]
         raise WorkloadError(
-            f"picture: value {shown}: expected rows and columns of the {n_primaries} primary rays",
+            f"picture: value {text}: expected rows and columns of the {n_primaries} primary rays",
             where=tables.rays.where,
         )
     return rows, columns

@@ -9,7 +9,7 @@ import numpy as np
 from simmpp.common.errors import WorkloadError
 from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
 
-RAY, OBJECT, PICTURE = "ray_", "object_", "picture"
+RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
 """Beginnings of the names of arrays, and the one array that is of no table."""
 ITINERARIES = ("itinerary_offsets", "itinerary_objects")
 
@@ -32,11 +32,11 @@ def read(path: Path) -> Tables:
     if len(itineraries) < 2:
         raise WorkloadError(f"expected the arrays {' and '.join(ITINERARIES)}", where=where)
     n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
-    rays = _table(where, RAY, arrays, n_rays)
+    rays = _table(where, RAY_PREFIX, arrays, n_rays)
     rays.columns.update(itineraries)
-    objects = _table(where, OBJECT, arrays, len(arrays.get("object_bytes", ())))
+    objects = _table(where, OBJECT_PREFIX, arrays, len(arrays.get("object_bytes", ())))
     for name in arrays:
-        if not name.startswith((RAY, OBJECT)):
+        if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
             raise WorkloadError(f"array {name[:40]!r}: it is unknown", where=where)
     return Tables(rays, objects, picture)
 

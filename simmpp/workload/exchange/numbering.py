@@ -10,11 +10,17 @@ from simmpp.common.compiled import njit
 Ints = NDArray[np.int64]
 
 
-def generations(parents: Ints, kinds: NDArray[np.uint8], pixels: Ints) -> tuple[Ints, Ints]:
+def by_generation(parents: Ints, kinds: NDArray[np.uint8], pixels: Ints) -> tuple[Ints, Ints]:
     """The rows of rays in their new order, and for each of them the row of its primary ray.
 
     Primary rays (parent -1) come first, by pixel; then the children of each ray in turn, by kind;
-    ties by row. Rows that are in a cycle of parents, or come from one, are left out.
+    ties by row. Rows that are in a cycle of parents, or come from one, are left out. Two trees as
+    another renderer may write them, and the order of their rows in a workload::
+
+        row     0        1       2       3        4
+        kind    primary  shadow  shadow  primary  reflected      order  3  0  2  4  1
+        parent  -1       0       3       -1       0              root   3  0  3  0  0
+        pixel   1        -       -       0        -
     """
     rows = np.arange(len(parents))
     primaries = np.flatnonzero(parents < 0)
@@ -31,15 +37,15 @@ def _breadth_first(primaries: Ints, first_child: Ints, children: Ints) -> tuple[
         np.empty(first_child.size - 1, np.int64),
         np.empty(first_child.size - 1, np.int64),
     )
-    found = primaries.size
-    order[:found], roots[:found] = primaries, primaries
-    at = 0
-    while at < found:
-        for child in children[first_child[order[at]] : first_child[order[at] + 1]]:
-            order[found], roots[found] = child, roots[at]
-            found += 1
-        at += 1
-    return order[:found], roots[:found]
+    n_ordered = primaries.size
+    order[:n_ordered], roots[:n_ordered] = primaries, primaries
+    row = 0
+    while row < n_ordered:
+        for child in children[first_child[order[row]] : first_child[order[row] + 1]]:
+            order[n_ordered], roots[n_ordered] = child, roots[row]
+            n_ordered += 1
+        row += 1
+    return order[:n_ordered], roots[:n_ordered]
 
 
 def row_in_cycle(parents: Ints, reached: Ints) -> int:
@@ -51,11 +57,11 @@ def row_in_cycle(parents: Ints, reached: Ints) -> int:
 
 @njit
 def _least_of_cycle(parents: Ints, row: int) -> int:
-    for _ in range(parents.size):
+    for _ in range(parents.size):  # after so many steps it is in the cycle, wherever it began
         row = parents[row]
-    least, at = row, parents[row]
-    while at != row:
-        least, at = min(least, at), parents[at]
+    least, ancestor = row, parents[row]
+    while ancestor != row:
+        least, ancestor = min(least, ancestor), parents[ancestor]
     return least
 
 
@@ -64,10 +70,10 @@ def first_repeat(offsets: Ints, objects: Ints, n_objects: int) -> tuple[int, int
     """The first (row, object) that an itinerary names twice, or (-1, -1)."""
     seen = np.full(n_objects, -1, np.int64)
     for row in range(offsets.size - 1):
-        for at in range(offsets[row], offsets[row + 1]):
-            if seen[objects[at]] == row:
-                return row, objects[at]
-            seen[objects[at]] = row
+        for obj in objects[offsets[row] : offsets[row + 1]]:
+            if seen[obj] == row:
+                return row, obj
+            seen[obj] = row  # so the marks of earlier rows need no clearing
     return -1, -1
 
 

@@ -1,4 +1,4 @@
-"""Rays and objects in two Parquet files side by side: the only import of pyarrow."""
+"""Rays and objects in two Parquet files side by side."""
 
 from __future__ import annotations
 
@@ -101,8 +101,8 @@ def _itineraries(table: Table, array: pa.Array) -> dict[str, Column]:
     objects, lengths = array.flatten(), pc.list_value_length(array)
     offsets = np.concatenate([[0], np.cumsum(lengths.to_numpy(zero_copy_only=False))])
     if objects.null_count:
-        at = int(np.argmax(objects.is_null().to_numpy(zero_copy_only=False)))
-        row = int(np.searchsorted(offsets, at, side="right")) - 1
+        entry = int(np.argmax(objects.is_null().to_numpy(zero_copy_only=False)))
+        row = int(np.searchsorted(offsets, entry, side="right")) - 1
         table.fail("itinerary", "an object is missing (null)", row)
     if not len(objects):
         objects = pa.array([], pa.int32())  # a list of nothing may be a list of any type

@@ -1,4 +1,4 @@
-"""Rays as another renderer tells them, checked and numbered as a workload wants them."""
+"""Rays of another renderer, checked and numbered as a workload wants them."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.workload.exchange.columns import Table
-from simmpp.workload.exchange.numbering import first_repeat, generations, regrouped, row_in_cycle
+from simmpp.workload.exchange.numbering import by_generation, first_repeat, regrouped, row_in_cycle
 from simmpp.workload.workload import PRIMARY, RAY_KINDS, REFLECTED, SHADOW
 
 ITINERARY = ("itinerary_offsets", "itinerary_objects")
-COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
+RAY_COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
 
 Ints = NDArray[np.int64]
 
 
 def rays_of(table: Table, n_objects: int) -> dict[str, NDArray[Any]]:
     """The fields of a workload that hold rays; raises WorkloadError for what makes no sense."""
-    table.known((*COLUMNS, *ITINERARY), required=ITINERARY)
+    table.known((*RAY_COLUMNS, *ITINERARY), required=ITINERARY)
     n = table.rows
     parents = table.integers("parent", -1, n - 1, -1, f"-1 or a row from 0 to {n - 1}")
     kinds = table.choices("kind", RAY_KINDS, np.where(parents < 0, PRIMARY, REFLECTED))
@@ -32,6 +32,7 @@ def rays_of(table: Table, n_objects: int) -> dict[str, NDArray[Any]]:
     number = np.empty(n, np.int64)
     number[order] = np.arange(n)
     new_offsets, entries = regrouped(offsets, order)
+    # Children lie in the order of their parents: where they begin is a sum over those before.
     first_children = int((parents < 0).sum()) + np.cumsum(n_children[order])
     return {
         "kinds": kinds[order],
@@ -72,10 +73,10 @@ def _itineraries(table: Table, n_objects: int) -> tuple[Ints, Ints]:
         table.fail("itinerary", f"offsets don't rise from 0 to the {len(objects)} objects' number")
     outside = (objects < 0) | (objects >= n_objects)
     if outside.any():
-        at = int(np.argmax(outside))
-        row = int(np.searchsorted(offsets, at, side="right")) - 1
+        entry = int(np.argmax(outside))
+        row = int(np.searchsorted(offsets, entry, side="right")) - 1
         expected = f"a row of the {n_objects} objects" if n_objects else "nothing: no objects"
-        table.fail("itinerary", f"value {objects[at]}: expected {expected}", row)
+        table.fail("itinerary", f"value {objects[entry]}: expected {expected}", row)
     objects = objects.astype(np.int64)
     row, twice = first_repeat(offsets, objects, n_objects)
     if row >= 0:
@@ -91,6 +92,7 @@ def _hits(table: Table, offsets: Ints, objects: Ints, n_children: Ints, n_object
         row = int(np.argmax(wrong))
         table.fail("itinerary", "it is empty: a ray that spawns others has hit an object", row)
     if "hit" not in table.columns:
+        # What spawned others was hit, and an itinerary ends there; of the rest nothing is known.
         hits = np.full(table.rows, -1, np.int64)
         hits[spawners] = objects[offsets[1:][spawners] - 1]
         return hits
@@ -113,15 +115,15 @@ def _distances(table: Table, hits: Ints) -> NDArray[np.float64]:
 def _numbered(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> tuple[Ints, Ints]:
     """Rows in their new order, and the row of each one's primary ray."""
     pixels = table.integers("pixel", -1, 2**62, -1, "a place in the picture, or -1")
-    given = "pixel" in table.columns
-    if given:
+    has_pixels = "pixel" in table.columns
+    if has_pixels:
         table.require((pixels >= 0) | (parents >= 0), "pixel", "a primary ray's place from 0")
-    order, roots = generations(parents, kinds, pixels)
+    order, roots = by_generation(parents, kinds, pixels)
     if len(order) < table.rows:
         row = row_in_cycle(parents, order)
         table.fail("parent", f"value {parents[row]}: the ray is its own ancestor", row)
     wrong = np.flatnonzero((pixels[order] != pixels[roots]) & (pixels[order] >= 0))
-    if given and len(wrong):
+    if has_pixels and len(wrong):
         row = int(order[wrong].min())
         table.fail("pixel", f"value {pixels[row]}: its primary ray has another", row)
     return order, roots

@@ -3,7 +3,7 @@
 import json
 
 from simmpp.scene.describe import describe, object_table
-from simmpp.scene.load import load_scene
+from simmpp.workload.sources import load_scene
 
 
 def test_description_of_the_smallest_mountain() -> None:

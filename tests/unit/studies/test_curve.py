@@ -14,9 +14,9 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.profit import ratio
-from simmpp.scene.load import load_scene
 from simmpp.studies.curve.estimate import Estimate, estimate, node_fractions, share
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import Workload
 

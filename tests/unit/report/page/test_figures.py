@@ -20,7 +20,7 @@ from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.bar_figures import bar_figures
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
-from simmpp.report.page.profit_figures import PROFITS, Shown, profit_figures
+from simmpp.report.page.profit_figures import PROFITS, ProfitData, profit_figures
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
 VALUES: dict[str, Any] = {
@@ -59,14 +59,14 @@ def panels(figures: list[Figure]) -> list[Any]:
 
 
 def figures_of(points: Points) -> list[Figure]:
-    return [*profit_figures(Shown(points.profits, points.axes)), *bar_figures(points)]
+    return [*profit_figures(ProfitData(points.profits, points.axes)), *bar_figures(points)]
 
 
 @few
 @given(rows=sweeps())
 def test_curves_show_each_profit_of_any_sweep_once(rows: list[Row]) -> None:
     points = points_of(rows, FURTHER)
-    found = list(profit_figures(Shown(points.profits, points.axes)))
+    found = list(profit_figures(ProfitData(points.profits, points.axes)))
     for figure in found:
         measure = next(
             m
@@ -142,7 +142,7 @@ def test_an_axis_that_follows_from_the_abscissa_splits_no_curve() -> None:
     )
     points = points_of(rows, FURTHER)
     found = arrange(points.profits, points.axes, "processors")
-    assert (found.facet, found.chosen) == (None, ())
+    assert (found.facet, found.plate_axes) == (None, ())
 
 
 def test_an_axis_with_many_values_is_chosen_from() -> None:
@@ -157,7 +157,7 @@ def test_an_axis_with_many_values_is_chosen_from() -> None:
     )
     points = points_of(rows, FURTHER)
     found = arrange(points.profits, points.axes, "fraction")
-    assert (found.facet, found.chosen) == ("scene", ("memory.transient",))
+    assert (found.facet, found.plate_axes) == ("scene", ("memory.transient",))
 
 
 def test_policies_have_the_same_colour_everywhere() -> None:
@@ -189,20 +189,20 @@ def test_plotly_reads_html_so_labels_are_escaped() -> None:
     points = points_of(
         with_further([row(p, fraction=x) for p in ("object", hostile) for x in (0.1, 1.0)]), FURTHER
     )
-    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    (panel,) = next(profit_figures(ProfitData(points.profits, points.axes))).plates[""]
     assert [trace["name"] for trace in drawn(panel)["data"]] == [
         "object dataflow",
         html.escape(hostile),
     ]
     named = with_further([row(point=hostile), row(point="plain")])
     points = points_of(named, FURTHER)
-    (panel,) = next(profit_figures(Shown(points.profits, points.axes))).plates[""]
+    (panel,) = next(profit_figures(ProfitData(points.profits, points.axes))).plates[""]
     assert html.escape(hostile) in drawn(panel)["layout"]["xaxis"]["ticktext"]
 
 
 def test_values_that_look_alike_have_panels_of_their_own() -> None:
     rows = with_further([row(processors=n, fraction=x) for n in (1, 2, 3) for x in (0.1, 0.10001)])
     points = points_of(rows, FURTHER)
-    figure = next(profit_figures(Shown(points.profits, points.axes)))
+    figure = next(profit_figures(ProfitData(points.profits, points.axes)))
     (plate,) = figure.plates.values()
     assert [panel.title for panel in plate] == ["x = 10 %", "x = 10 % (2)"]

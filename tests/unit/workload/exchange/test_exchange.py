@@ -167,9 +167,9 @@ def test_the_order_of_rows_does_not_matter(tmp_path: Path, seed: int) -> None:
 
 
 def _depths(workload: Workload) -> list[int]:
-    from simmpp.workload.describe import generations
+    from simmpp.workload.describe import rays_by_depth
 
-    return generations(workload)
+    return rays_by_depth(workload)
 
 
 def test_costs_of_objects_replace_the_machines(tmp_path: Path) -> None:

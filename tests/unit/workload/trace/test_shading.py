@@ -9,9 +9,9 @@ import pytest
 from PIL import Image
 
 from simmpp.common.errors import WorkloadError
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Camera, Light, Material, Polygon, Scene, Sphere
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.shading import AMBIENT, render, save_png
 from simmpp.workload.trace.tracer import trace
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from simmpp.common.errors import ConfigError, SceneError
-from simmpp.scene.load import load_scene
 from simmpp.scene.scene import Camera, Cone, Light, Material, Polygon, Scene, Sphere
 from simmpp.workload.check import check
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace import tracer
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.tracer import trace

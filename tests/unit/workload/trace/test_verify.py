@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from simmpp.common.errors import WorkloadError
-from simmpp.scene.load import load_scene
 from simmpp.workload.picture import Picture
+from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.trace.verify import rays_from_tests, verify

@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from simmpp.common.errors import ConfigError, InputError, SceneError
-from simmpp.scene.load import load_scene
+from simmpp.config.config import config_from_mapping
 from simmpp.scene.nff import write_nff
+from simmpp.scene.scene import Scene
 from simmpp.scene.spd.generators import nff
+from simmpp.workload.sources import load_scene, scene_of
 
 QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 
@@ -59,29 +61,43 @@ def test_a_generated_scene_is_its_text_read_back(files: Path) -> None:
         ("Mountain:3", ConfigError, "no scene 'Mountain': expected 'mountain'"),
         ({"mesh": "in/Tetra"}, ConfigError, "no scene 'Tetra': expected 'tetra'"),
         ("TETRA", ConfigError, "no scene 'TETRA': expected 'tetra'"),
-        ("quad.obj:0", ConfigError, "quad.obj:0: objects.clusters: expected a number"),
-        ("foo:3", ConfigError, "no scene 'foo:3'"),
-        ("mountain:", ConfigError, "expected a whole number for the size"),
-        ("mountain:2.5", ConfigError, "expected a whole number for the size"),
+        ("quad.obj:0", ConfigError, "scene.objects: value {'clusters': 0}: expected nodes,"),
+        ("foo:3", ConfigError, "no scene 'foo': no such file"),
+        ("mountain:", ConfigError, "scene.size: value '': expected an integer from 1"),
+        ("mountain:2.5", ConfigError, "scene.size: value '2.5': expected an integer from 1"),
         ("mountain:99", ConfigError, "at most 7, got 99"),
-        ("", ConfigError, "expected a name, a file or a mapping"),
-        ("a\0.nff", ConfigError, "expected a name, a file or a mapping"),
-        (7, ConfigError, "expected a name, a file or a mapping"),
+        ("", ConfigError, "scene: value '': expected a name such as mountain:5, a file or a"),
+        ("a\0.nff", ConfigError, "scene: value 'a\\x00.nff': expected a name"),
+        (7, ConfigError, "scene: value 7: expected a name such as mountain:5, a file or a"),
         ("missing.nff", SceneError, "missing.nff: can't read the file: No such file"),
         ("missing.glb", SceneError, "missing.glb: can't read the file: No such file"),
         ("x" * 5000 + ".nff", SceneError, "can't read the file"),
         (".", SceneError, "can't read the file: Is a directory"),
-        ("quad.obj:lumps", ConfigError, "quad.obj:lumps: objects: expected nodes, components"),
-        ({}, ConfigError, "expected one of the keys spd, nff, mesh"),
-        ({"spd": "tree", "nff": "own.nff"}, ConfigError, "expected one of the keys"),
-        ({"spd": "tree", "sise": 2}, ConfigError, "unknown key 'sise' beside 'spd'; known: size"),
-        ({"spd": "tree", "size": "2"}, ConfigError, "scene.size: expected a whole number, got '2'"),
-        ({"spd": "tree", "size": True}, ConfigError, "scene.size: expected a whole number"),
-        ({"spd": "oak"}, ConfigError, "unknown SPD scene 'oak'; known: balls"),
-        ({"spd": ["tree"]}, ConfigError, "scene.spd: expected a name"),
-        ({"nff": "a\0.nff"}, SceneError, "can't read the file"),
-        ({"mesh": "quad.obj", "objects": {"clusters": 0}}, ConfigError, "objects.clusters"),
+        (
+            "quad.obj:lumps",
+            ConfigError,
+            "quad.obj:lumps: value 'lumps': expected nodes, components",
+        ),
+        ({}, ConfigError, "expected one of spd, nff, mesh, workload, got none"),
+        ({"spd": "tree", "nff": "own.nff"}, ConfigError, "workload, got spd and nff"),
+        (
+            {"spd": "tree", "sise": 2},
+            ConfigError,
+            "scene: unknown key 'sise': did you mean 'size'?",
+        ),
+        ({"spd": "tree", "size": "2"}, ConfigError, "scene.size: value '2': expected an integer"),
+        ({"spd": "tree", "size": True}, ConfigError, "scene.size: value true: expected an integer"),
+        ({"spd": "oak"}, ConfigError, "scene.spd: value 'oak': expected balls, "),
+        ({"spd": ["tree"]}, ConfigError, "scene.spd: value ['tree']: expected balls, "),
+        ({"nff": "a\0.nff"}, ConfigError, "scene.nff: value 'a\\x00.nff': expected a text"),
+        (
+            {"mesh": "quad.obj", "objects": {"clusters": 0}},
+            ConfigError,
+            "expected nodes, components",
+        ),
         ({"mesh": "quad.obj", "objects": 3}, ConfigError, "expected nodes, components"),
+        ({"mesh": "quad.obj", "size": 3}, ConfigError, "scene: size goes with spd only"),
+        ("rays.parquet", ConfigError, "scene: expected a scene to trace; a workload file has rays"),
     ],
 )
 def test_wrong_specs(files: Path, spec: object, error: type[InputError], problem: str) -> None:
@@ -101,3 +117,16 @@ def test_a_byte_order_mark_and_odd_comments_do_no_harm(tmp_path: Path) -> None:
     file = tmp_path / "marked.nff"
     file.write_bytes(b"\xef\xbb\xbf# caf\xe9\r\n" + nff("jacks", 1).encode())
     assert len(load_scene(file).objects) == 9
+
+
+def configured(spec: str) -> Scene:
+    return scene_of(config_from_mapping({"scene": spec}).ray_source, "scene")()
+
+
+@pytest.mark.parametrize("spec", ["foo", "Tetra:3", "quad.obj:lumps", "mountain:9", "", "x.npz"])
+def test_a_configuration_says_the_same(files: Path, spec: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_scene(spec)
+    with pytest.raises(InputError) as of_configuration:
+        configured(spec)
+    assert str(of_configuration.value) == str(caught.value)

@@ -1,0 +1,76 @@
+"""Where rays come from: a scene in which they are traced, or a file of another renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from simmpp.scene.scene import Scene
+from simmpp.workload.picture import Picture
+
+if TYPE_CHECKING:
+    from simmpp.workload.trace.tracer import Progress
+    from simmpp.workload.workload import Workload
+
+# The tracer and the reader of tables are imported where they are called: with numba they take a
+# second, and neither a checked configuration nor the list of a scene's objects needs them.
+
+
+class RaySource(Protocol):
+    """What a configuration asks of the place where its rays come from."""
+
+    @property
+    def scene(self) -> Callable[[], Scene] | None:
+        """Makes the scene that is rendered; None where there are rays, but no geometry."""
+
+    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
+        """What the workload is called, and its digest, without tracing it."""
+
+    def workload(
+        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+    ) -> Workload:
+        """The workload; ``notice`` is told of a cache that is of no use."""
+
+
+@dataclass(frozen=True)
+class SceneSource:
+    """Rays that are traced here, in a scene."""
+
+    scene: Callable[[], Scene]
+
+    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
+        """The scene's name; the digest of all that the tracer would read."""
+        from simmpp.workload.digest import digest_of
+
+        scene = self.scene()
+        return scene.name, digest_of(scene, picture)
+
+    def workload(
+        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+    ) -> Workload:
+        """From the cache if it was traced before."""
+        from simmpp.workload.cache.store import workload_for
+
+        return workload_for(self.scene(), picture, progress=progress, notice=notice)
+
+
+@dataclass(frozen=True)
+class FileSource:
+    """Rays that another renderer has written to a file."""
+
+    file: str
+    scene: None = None
+
+    def name_and_digest(self, picture: Picture) -> tuple[str, str]:
+        """The file's stem; the digest of what the file holds, which has to be read for it."""
+        workload = self.workload(picture, None, None)
+        return workload.name, workload.digest
+
+    def workload(
+        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+    ) -> Workload:
+        """The file's; it says itself what its picture is."""
+        from simmpp.workload.exchange.exchange import import_workload
+
+        return import_workload(self.file)
