@@ -142,10 +142,10 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
 
 def _print(found: Sequence[Move], why: Sequence[str]) -> None:
     from simmpp.commands.terminal import output, table
-    from simmpp.studies.check.moves import lines, summary
+    from simmpp.studies.check.moves import lines, moves_by_measure
 
     console = output()
-    console.print(table(summary(found)))
+    console.print(table(moves_by_measure(found)))
     curves = [move for move in found if move.of_curve]
     for part in filter(None, (curves, [move for move in found if not move.of_curve])):
         console.print()
@@ -171,7 +171,7 @@ def _write(found: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, o
     """What a failed check leaves for people: tables and a picture."""
     from simmpp.common.files import write_csv
     from simmpp.report.page.overlay import overlay
-    from simmpp.studies.check.baseline import PROFITS, RECORD, RESULTS
+    from simmpp.run.rows import PROFITS, RECORD, RESULTS
     from simmpp.studies.check.moves import lines
 
     for name in (PROFITS, RESULTS, RECORD):

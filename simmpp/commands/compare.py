@@ -46,10 +46,10 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
 
 def _print(found: Difference) -> None:
     from simmpp.commands.terminal import output, table
-    from simmpp.report.page.difference import line, ranked, summary
+    from simmpp.report.page.difference import changes_by_measure, line, ranked
 
     console = output()
-    console.print(table(summary(found)))
+    console.print(table(changes_by_measure(found)))
     console.print()
     changes = ranked(found.changes)
     if changes:

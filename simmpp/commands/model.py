@@ -142,13 +142,13 @@ def _write(
 ) -> None:
     from simmpp.model.analytical import rays_of
     from simmpp.model.costs import costs_of
-    from simmpp.studies.nebel98.figure2_data import model_grid, panels, write_model
+    from simmpp.studies.nebel98.figure2_data import model_grid, winner_maps, write_model
     from simmpp.studies.nebel98.figure2_plot import draw_figure2
 
     write_model(rows, out)
     costs = costs_of(config.machine_for(config.processors), workload)
     seed = config.settings.seeds[0]
-    maps = panels(costs, rays_of(workload), model_grid(config), ratios, seed)
+    maps = winner_maps(costs, rays_of(workload), model_grid(config), ratios, seed)
     heading = f"Analytical model of Nebel 1998, {workload.name}, {config.settings.machine.preset}"
     for path in draw_figure2(maps, heading, out):
         click.echo(f"wrote {path}")

@@ -151,10 +151,10 @@ def _simulate(
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    from simmpp.run.record import record, write_record
+    from simmpp.run.record import record_of_run, write_record
     from simmpp.run.rows import row, write_rows
 
-    write_record(record(point, runs), out / "run.json")
+    write_record(record_of_run(point, runs), out / "run.json")
     write_rows([row(point, run) for run in runs], out / "results.csv")
 
 

@@ -1,4 +1,7 @@
-"""Tables of rows as files: equal rows give equal bytes, and a file is there whole or not at all."""
+"""Tables of rows as files: equal rows give equal bytes, and a file is there whole or not at all.
+
+Also which files must not be opened at all.
+"""
 
 from __future__ import annotations
 
@@ -10,20 +13,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-# --- files that must not be opened: a named pipe waits for a writer, a device may never end ---
-
-
-def refuse_special(path: str | os.PathLike[str]) -> None:
-    """Raise OSError if ``path`` is neither a file nor a folder; no such file is fine."""
-    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise OSError(errno.EINVAL, "expected a regular file", os.fspath(path))
-
-
 if TYPE_CHECKING:
     import pyarrow
 
 Row = dict[str, Any]
 """A cell is an int, a float or a text; the empty text stands for what there isn't."""
+
+
+def refuse_special(path: str | os.PathLike[str]) -> None:
+    """Raise OSError if ``path`` is neither a file nor a folder; no such file is fine.
+
+    A named pipe waits for a writer, and a device may never end.
+    """
+    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+        raise OSError(errno.EINVAL, "expected a regular file", os.fspath(path))
 
 
 @contextmanager

@@ -28,9 +28,9 @@ from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.profit_figures import Shown, profit_figures
+from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.journal import is_at_work
-from simmpp.sweeps.sweep import RESULTS
 
 PAGE, FIGURES = "report.html", "figures"
 
