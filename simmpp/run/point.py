@@ -82,11 +82,11 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     """The policies to run, and whether the configuration names them; the reference comes first."""
     named = config.policies
     names = [parameters.name for parameters in named]
-    policies = [(parameters, True) for parameters in named]
-    policies += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
+    chosen = [(parameters, True) for parameters in named]
+    chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
     if REFERENCE not in names:
-        return [(PolicyParameters(REFERENCE), False), *policies]
-    return sorted(policies, key=lambda policy: policy[0].name != REFERENCE)
+        return [(PolicyParameters(REFERENCE), False), *chosen]
+    return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
 
 
 class Records(TypedDict):

@@ -10,8 +10,8 @@ An example: tolerance 2 %, refined, x in .1, .5, .9, object and concurrent dataf
     begin         asks for 3 x (2 policies) x (seeds 0 to 7) = 48 tasks
     .9 is back    its 8 profits are within 2 %: settled
     .1 is back    6 % after 8 seeds: 9 times as many would do; asks for as many again, 8 to 15
-    .5 is back    3 %: 18 seeds; asks for 8 to 15. Others run while these are awaited
-    .1 is back    5 % after 16: asks for 16 to 31, and so on until it is settled
+    .5 is back    2.5 %: 13 seeds would do; asks for 8 to 12, and others run meanwhile
+    .1 is back    5 % after 16: asks for 16 to 31, and so on until it is settled, as .5 is
     all settled   the round ends: between .1 and .5 a line is off by 4 %: asks for 8 seeds of x = .3
     .3 settled    the next round: lines are good enough everywhere, so nothing is asked for
 """
@@ -63,8 +63,8 @@ class Group:
 class AdaptiveSampler:
     """The points that are asked for, and which of them wait for outcomes.
 
-    Its neighbour is ``adaptive.AverageLearner1D``, which has neither paired ratios nor results that
-    are the same in whatever order outcomes come.
+    Its neighbour is AverageLearner1D of the package adaptive, which has neither paired ratios nor
+    results that are the same in whatever order outcomes come.
     """
 
     def __init__(self, plan: Plan, results: Results) -> None:

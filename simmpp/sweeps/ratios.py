@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from statistics import fmean
 from typing import Any, NamedTuple
 
@@ -69,8 +70,8 @@ class Measurements:
     @property
     def seeds(self) -> int:
         """Seeds of the point that has most."""
-        policies = (policies.values() for policies in self._places.values())
-        return max((len(finished(seeds)) for each in policies for seeds in each), default=0)
+        points = chain(*(policies.values() for policies in self._places.values()))
+        return max((len(finished(seeds)) for seeds in points), default=0)
 
     def _of(self, point: CurvePoint) -> Seeds:
         *place, policy = point

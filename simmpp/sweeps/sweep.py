@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 SHOWN_S, SHARE = 5.0, 20
 """Seconds between two writings of the tables of a sweep that runs at least, and how many times as
 long as one writing takes."""
+Tables = dict[str, tuple[list[Row], Sequence[str]]]
+"""Rows and columns by the name of their file."""
 
 
 class Watcher:
@@ -60,20 +63,6 @@ class SweepResult(NamedTuple):
     """As results.csv: one row per point and seed."""
     profits: pandas.DataFrame
     """As profits.csv: one row per point."""
-
-
-class Table(NamedTuple):
-    """Rows and the columns that are written of them."""
-
-    rows: list[Row]
-    columns: Sequence[str]
-
-
-class Tables(NamedTuple):
-    """``results.csv`` and ``profits.csv`` of the points that are finished."""
-
-    rows: Table
-    profits: Table
 
 
 def run_sweep(
@@ -107,7 +96,7 @@ def run_sweep(
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
         tables = _run(plan, results, own, folder, watcher or Watcher())
-    return SweepResult(_frame(*tables.rows), _frame(*tables.profits))
+    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]))
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:
@@ -139,6 +128,17 @@ def _run(plan: Plan, results: Results, pool: Pool, folder: Path | None, watcher:
     finally:
         tables = write()
     return tables
+
+
+def run_plans(
+    plans: Iterable[Plan], results: Results, workers: int = 1, watcher: Watcher | None = None
+) -> None:
+    """Run what isn't finished of several plans, what they have in common once."""
+    plans = list(plans)
+    together = Plan(plans[0].config, tuple(chain(*(plan.points for plan in plans))), ())
+    sampler = AdaptiveSampler(together, results)
+    with closing(pool_for(max(1, min(workers, len(sampler.pending))), None, run_task)) as pool:
+        run_pending(sampler, results, pool, watcher or Watcher())
 
 
 def run_pending(
@@ -179,20 +179,23 @@ def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher
 
 
 def tables_of(plan: Plan, results: Results) -> Tables:
-    """The tables; nobody else computes profits where there is a sweep."""
+    """The tables of the points that are finished; what reads them computes no profits again."""
     rows, keys = plan.rows(results.outcomes), plan.profit_keys
     profits = profit_rows(rows, keys, plan.config.settings.tolerance)
-    return Tables(Table(rows, result_columns(plan.further)), Table(profits, profit_columns(keys)))
+    timings = plan.timings(results.outcomes, results.trace_s)
+    return {
+        RESULTS: (rows, result_columns(plan.further)),
+        PROFITS: (profits, profit_columns(keys)),
+        TIMINGS: (timings, plan.timing_columns),
+    }
 
 
 def write_tables(plan: Plan, results: Results, folder: Path) -> Tables:
-    """Write the tables of the points that are finished, and what they are of."""
+    """Write them, and what they are of."""
     tables = tables_of(plan, results)
-    write_csv(*tables.rows, folder / RESULTS)
-    write_parquet(*tables.rows, folder / PARQUET)
-    write_csv(*tables.profits, folder / PROFITS)
-    timings = plan.timings(results.outcomes, results.trace_s)
-    write_csv(timings, plan.timing_columns, folder / TIMINGS)
+    for name, (rows, columns) in tables.items():
+        write_csv(rows, columns, folder / name)
+    write_parquet(*tables[RESULTS], folder / PARQUET)
     write_record(plan.record, folder / RECORD)
     return tables
 

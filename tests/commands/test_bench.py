@@ -10,8 +10,8 @@ from simmpp.cli import main
 from simmpp.common.errors import ModelError
 from simmpp.config.config import load_config
 from simmpp.methods import table as methods
-from simmpp.studies.bench import bench as benching
 from simmpp.studies.bench.bench import bench
+from simmpp.sweeps import sweep as sweeping
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import run_task
@@ -74,7 +74,7 @@ def test_it_continues_and_then_says_the_same(monkeypatch: pytest.MonkeyPatch) ->
             raise KeyboardInterrupt
         return run_task(task)
 
-    monkeypatch.setattr(benching, "run_task", stops)
+    monkeypatch.setattr(sweeping, "run_task", stops)
     assert simmpp("--seeds", "8").exit_code == 130
     assert simmpp("--seeds", "8").exit_code == 0
     whole, text = len(ran), Path("o/bench.csv").read_bytes()
@@ -127,7 +127,7 @@ def test_what_it_sets_itself_is_refused(setting: str, problem: str) -> None:
 def test_more_seeds_add_to_what_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     ran: list[str] = []
     counting = lambda task: ran.append(task.key) or run_task(task)  # type: ignore[func-returns-value]  # noqa: E731
-    monkeypatch.setattr(benching, "run_task", counting)
+    monkeypatch.setattr(sweeping, "run_task", counting)
     assert simmpp("--seeds", "4").exit_code == 0
     few = len(ran)
     assert simmpp("--seeds", "5").exit_code == 0

@@ -39,8 +39,8 @@ def _settings(folder: Folder) -> Iterator[tuple[str, str]]:
         for key, value in config.items():
             if key not in UNSAID and value not in (None, {}, []):
                 yield key, _text(value)
-    if chosen := folder.record.get("set"):
-        yield "set", _text(chosen)
+    if overrides := folder.record.get("set"):
+        yield "set", _text(overrides)
 
 
 def _text(value: Any) -> str:

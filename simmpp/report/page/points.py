@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from statistics import fmean
@@ -11,7 +11,7 @@ from simmpp.common.files import Row
 from simmpp.methods.columns import PLACE
 from simmpp.report.page.arrangement import axes_of
 from simmpp.run.point import REFERENCE
-from simmpp.run.rows import Places, Seeds, by_place, finished, pairs
+from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order
 
 ACCOUNTS = {
@@ -87,9 +87,16 @@ def points_of(rows: Sequence[Row], further: tuple[str, ...], known: Sequence[Row
     """
     names = (*PLACE, *further)
     places = by_place(rows, names)
-    written = [profit for policies in _current(known, places, names) for profit in policies]
-    there = {tuple(row[name] for name in names) for row in written}
-    rest = [row for row in rows if tuple(row[name] for name in names) not in there]
+    of_place: dict[tuple[object, ...], dict[str, Row]] = {}
+    for row in known:
+        of_place.setdefault(tuple(row.get(name) for name in names), {})[row["policy"]] = row
+    written: list[Row] = []
+    rest: list[Row] = []
+    for place, policies in places.items():
+        if _counts(policies) == {title: row["n"] for title, row in of_place.get(place, {}).items()}:
+            written += of_place[place].values()
+        else:
+            rest += (row for seeds in policies.values() for row in seeds.values())
     profits = profits_in_order([*written, *profit_rows(rest, further)], further)
     numbers: dict[tuple[object, ...], int] = {}
     groups, seeds = [], []
@@ -100,15 +107,7 @@ def points_of(rows: Sequence[Row], further: tuple[str, ...], known: Sequence[Row
     return Points(profits, seeds, groups, further)
 
 
-def _current(
-    known: Sequence[Row], places: Places, names: Sequence[str]
-) -> Iterator[Collection[Row]]:
-    """Profits of the places where they are those of all policies, each by as many seeds."""
-    of_place: dict[tuple[object, ...], dict[str, Row]] = {}
-    for row in known:
-        of_place.setdefault(tuple(row.get(name) for name in names), {})[row["policy"]] = row
-    for place, policies in places.items():
-        references, profits = policies.get(REFERENCE, {}), of_place.get(place, {})
-        counts = {policy: len(pairs(references, seeds)) for policy, seeds in policies.items()}
-        if counts == {policy: row["n"] for policy, row in profits.items()}:
-            yield profits.values()
+def _counts(policies: Mapping[str, Seeds]) -> dict[str, int]:
+    """How many profits each policy of a place has."""
+    references = policies.get(REFERENCE, {})
+    return {policy: len(pairs(references, seeds)) for policy, seeds in policies.items()}

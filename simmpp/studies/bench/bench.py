@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 from pathlib import Path
 
 from simmpp.common.errors import ConfigError
@@ -25,14 +24,11 @@ from simmpp.scene.load import load_scene
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
 from simmpp.studies.bench.figure import bench_panels
 from simmpp.studies.nebel98.figures import NAMES
-from simmpp.sweeps.adaptive import AdaptiveSampler
-from simmpp.sweeps.executors import pool_for
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.plan import Plan, plan_of
 from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.stopping import seeds_in_order
-from simmpp.sweeps.sweep import Watcher, run_pending
-from simmpp.sweeps.worker import run_task
+from simmpp.sweeps.sweep import Watcher, run_plans
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.tracer import trace
 
@@ -62,13 +58,10 @@ def bench(
     refuse_unfit(config)
     plans = {method: plan_of(_tried(config, method, seeds)) for method in METHODS}
     full = plans[SIMULATE]
-    together = Plan(full.config, tuple(chain(*(plan.points for plan in plans.values()))), ())
     out.mkdir(parents=True, exist_ok=True)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
         _time_tracing(full, journal, watcher or Watcher())
-        with closing(pool_for(workers, None, run_task)) as pool:
-            sampler = AdaptiveSampler(together, journal)
-            run_pending(sampler, journal, pool, watcher or Watcher())
+        run_plans(plans.values(), journal, workers, watcher)
         return _written(plans, journal, out)
 
 
@@ -110,8 +103,8 @@ def _tried(config: Config, method: str, seeds: int) -> Config:
         for entry in long_policies(source.get("policy", DEFAULT_POLICY))
         if known is None or not isinstance(entry, dict) or entry["name"] in known
     ]
-    chosen = seeds_in_order(config.settings.seeds, min(most, seeds))
-    config = with_key(with_key(config, "method", method), "seeds", chosen)
+    first = seeds_in_order(config.settings.seeds, min(most, seeds))
+    config = with_key(with_key(config, "method", method), "seeds", first)
     return with_key(config, "policy", policies or [REFERENCE])
 
 

@@ -90,8 +90,8 @@ def _rung(runs: Runs, method: str, groups: Sequence[Sequence[int]]) -> Row:
     row["reference_seeds"] = len(runs.of_method[SIMULATE]) - len(groups[0])
     row[CPU] = fmean(sum(of_seed[seed][CPU] for seed in group) for group in groups)
     for name in QUANTITIES:
-        said, true = _values(runs, method, name), _values(runs, SIMULATE, name)
-        row[f"{name}_error"] = _error(said, true, groups)
+        estimates, true = _values(runs, method, name), _values(runs, SIMULATE, name)
+        row[f"{name}_error"] = _error(estimates, true, groups)
         row[f"{name}_resolution"] = _resolution(list(true.values()))
     return row
 
@@ -110,14 +110,14 @@ def _values(runs: Runs, method: str, quantity: str) -> dict[int, float]:
 
 
 def _error(
-    said: Mapping[int, float], true: Mapping[int, float], groups: Sequence[Sequence[int]]
+    estimates: Mapping[int, float], true: Mapping[int, float], groups: Sequence[Sequence[int]]
 ) -> float | str:
     """Root mean square over groups of the relative error; empty where there is none."""
-    if not said or not true:
+    if not estimates or not true:
         return ""
     errors = []
     for group in groups:
-        estimate = fmean(said[seed] for seed in group)
+        estimate = fmean(estimates[seed] for seed in group)
         reference = fmean(value for seed, value in true.items() if seed not in group)
         errors.append(_relative(estimate, reference))
     return "" if any(map(math.isnan, errors)) else root_mean_square(errors)

@@ -28,8 +28,8 @@ from simmpp.sweeps.profits import profit_columns
 DIGESTS = "sha256"
 """Key of ``run.json``: the other files' digests."""
 IRRELEVANT_TO_INTEGERS = ("check", "engine")
-"""Keys of a configuration that change no integer; rows do say their engine, and journals keep to
-one, so for these the engine is not irrelevant."""
+"""Keys of a configuration that change no integer. A journal has no such exception for the engine,
+which is a column of its rows."""
 MACHINES, WORKLOADS = "machines", "workloads"
 """What of ``run.json`` explains moves."""
 UPDATE = "run with --update to make one"

@@ -159,9 +159,9 @@ def winner_maps(
     variants = [("this machine", costs)]
     variants += [(f"{name} x {factor:g}", costs.scaled(name, factor)) for name, factor in ratios]
     return [
-        _winner_map(f"{title}, imbalance {imbalance:g}", chosen, rays, grid, imbalance, seed)
+        _winner_map(f"{title}, imbalance {imbalance:g}", scaled, rays, grid, imbalance, seed)
         for imbalance in (0.0, FIGURE_IMBALANCE)
-        for title, chosen in variants
+        for title, scaled in variants
     ]
 
 

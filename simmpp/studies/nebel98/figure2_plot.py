@@ -72,9 +72,9 @@ def _dots(axes: Axes, grid: Makespans) -> None:
     x, nb = np.meshgrid(grid.fractions, grid.processors)
     won = winners(grid)
     for sign, marker, face in ((-1, "o", "white"), (1, "s", "black")):
-        chosen = won == sign
+        theirs = won == sign
         axes.scatter(
-            x[chosen], nb[chosen], 9, face, marker=marker, edgecolors="black", linewidths=0.4
+            x[theirs], nb[theirs], 9, face, marker=marker, edgecolors="black", linewidths=0.4
         )
 
 

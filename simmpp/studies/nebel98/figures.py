@@ -90,7 +90,7 @@ def figure6(measured: Measurements) -> list[Panel]:
     linear = Curve("linear", {nb: Spread(*[nb / few] * 3) for nb in numbers}, is_guide=True)
     continued = f" continued to {numbers[-1]} PEs" if numbers[-1] > MANY else ""
     title = f"Figure 6{continued}: {_name(MOUNTAIN5)}, concurrent dataflow"
-    said = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
+    stated = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
     nb = Scale("processing elements (PEs)", is_log=True, ticks=tuple(numbers))
     gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True, ticks=ACCELERATIONS)
     return [
@@ -99,7 +99,7 @@ def figure6(measured: Measurements) -> list[Panel]:
             nb,
             gained,
             [*curves, linear],
-            [said],
+            [stated],
             note=_note(measured),
             legend="of the scene on each PE",
         )

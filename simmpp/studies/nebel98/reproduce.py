@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from importlib.resources import as_file, files
-from itertools import chain
 from pathlib import Path
 
 from simmpp.common.files import Row, write_csv, write_text
@@ -22,13 +21,10 @@ from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.figure2 import reproduce_figure2
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS, Verdict
-from simmpp.sweeps.adaptive import AdaptiveSampler
-from simmpp.sweeps.executors import pool_for
 from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.plan import Plan, plan_of
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.ratios import Measurements
-from simmpp.sweeps.sweep import Watcher, run_pending
-from simmpp.sweeps.worker import run_task
+from simmpp.sweeps.sweep import Watcher, run_plans
 
 EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
 """Stems of configurations, of the rows they give and of the figures that show them."""
@@ -70,12 +66,8 @@ def reproduce(
     overrides = _overrides(seeds, resolution)
     plans = {name: plan_of(load_experiment(name, overrides)) for name in EXPERIMENTS}
     out.mkdir(parents=True, exist_ok=True)
-    everything = _together(plans)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
-        pending = sum(not journal.finished(task.key) for task in everything.tasks)
-        with closing(pool_for(max(1, min(workers, pending)), None, run_task)) as pool:
-            sampler = AdaptiveSampler(everything, journal)
-            run_pending(sampler, journal, pool, watcher or Watcher())
+        run_plans(plans.values(), journal, workers, watcher)
         rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
         model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)
@@ -92,12 +84,6 @@ def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
     """The configuration of an experiment."""
     with as_file(_FOLDER / f"{name}.yaml") as path:
         return load_config(path, overrides)
-
-
-def _together(plans: Mapping[str, Plan]) -> Plan:
-    """One plan of all points: equal ones are simulated once, neighbours share what they can."""
-    first = next(iter(plans.values()))
-    return Plan(first.config, tuple(chain(*(plan.points for plan in plans.values()))), ())
 
 
 def _report(
