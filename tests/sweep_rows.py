@@ -9,8 +9,7 @@ from typing import Any
 
 from simmpp.common.files import Row, write_csv
 from simmpp.methods.columns import NUMBERS, result_columns
-from simmpp.run.rows import in_order
-from simmpp.sweeps.sweep import RESULTS
+from simmpp.run.rows import RESULTS, in_order
 
 SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
 """Of a policy; others are as fast as object dataflow."""

@@ -12,9 +12,7 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections.abc import Iterable
 from contextlib import closing
-from itertools import chain
 from pathlib import Path
 
 from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, overrides_of
@@ -27,12 +25,10 @@ from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.reproduce import load_experiment
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
-from simmpp.sweeps.adaptive import Frontier
-from simmpp.sweeps.executors import crew_for
 from simmpp.sweeps.journal import Journal, Outcome
-from simmpp.sweeps.plan import Plan, plan
-from simmpp.sweeps.ratios import Measured
-from simmpp.sweeps.sweep import Watcher, run_pending
+from simmpp.sweeps.plan import Plan, plan_of
+from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.sweep import run_plans
 
 HERE = Path(__file__).parent
 PUBLISHED = HERE.parent / "nebel98" / "claims.csv"
@@ -50,24 +46,16 @@ Row = dict[str, str | int]
 def plans_of(choice: Choice) -> dict[str, Plan]:
     """What has to be simulated for each figure."""
     size = [f"picture.resolution={choice.resolution}", f"seeds={SEEDS}"]
-    return {name: plan(_config(name, choice, size)) for name in FIGURES}
+    return {name: plan_of(_config(name, choice, size)) for name in FIGURES}
 
 
 def _config(figure: str, choice: Choice, size: list[str]) -> Config:
     return load_experiment(figure, [*size, *overrides_of(choice, load_experiment(figure))])
 
 
-def run(plans: Iterable[Plan], journal: Journal) -> None:
-    """Simulate what isn't finished; what several choices have in common is simulated once."""
-    every = list(plans)
-    together = Plan(every[0].config, tuple(chain(*(each.points for each in every))), ())
-    with closing(crew_for(1, None)) as crew:
-        run_pending(Frontier(together, journal), journal, crew, None, Watcher())
-
-
 def verdicts(plans: dict[str, Plan], outcomes: dict[str, Outcome]) -> list[Verdict]:
     """The claims about what is simulated, judged on a choice's own rows."""
-    return judge(Evidence(*(Measured(plans[name].rows(outcomes)) for name in FIGURES)))
+    return judge(Evidence(*(Measurements(plans[name].rows(outcomes)) for name in FIGURES)))
 
 
 def row_of(choice: Choice, judged: list[Verdict]) -> Row:
@@ -117,7 +105,7 @@ def main() -> None:
     with closing(Journal(folder, {"versions": result_versions()})) as journal:
         for choice in (DEFAULT, *SINGLE, *SEVERAL, *FULL):
             plans = plans_of(choice)
-            run(plans.values(), journal)
+            run_plans(plans.values(), journal)
             judged = verdicts(plans, journal.outcomes)
             rows.append(row_of(choice, judged))
             details += details_of(choice, judged)

@@ -24,10 +24,8 @@ from simmpp.commands.terminal import notice, output, table
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
 from simmpp.config.config import Config, load_config
+from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.baseline import (
-    PROFITS,
-    RECORD,
-    RESULTS,
     UPDATE,
     Sweep,
     baseline_folder,
@@ -36,7 +34,7 @@ from simmpp.studies.check.baseline import (
     reasons,
     write_baseline,
 )
-from simmpp.studies.check.moves import Move, lines, moves, summary
+from simmpp.studies.check.moves import Move, lines, moves, moves_by_measure
 from simmpp.sweeps.sweep import run_sweep
 
 MOVED = 1
@@ -152,7 +150,7 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
 
 def _print(moved: Sequence[Move], why: Sequence[str]) -> None:
     console = output()
-    console.print(table(summary(moved)))
+    console.print(table(moves_by_measure(moved)))
     curves = [move for move in moved if move.of_curve]
     for part in filter(None, (curves, [move for move in moved if not move.of_curve])):
         console.print()

@@ -9,7 +9,13 @@ import click
 from simmpp.commands.options import NamedPath, examples, writable
 from simmpp.commands.terminal import output, table
 from simmpp.report.page.comparison import reasons, verdict, write_comparison
-from simmpp.report.page.difference import Difference, difference_of, line, ranked, summary
+from simmpp.report.page.difference import (
+    Difference,
+    changes_by_measure,
+    difference_of,
+    line,
+    ranked,
+)
 from simmpp.report.page.folder import read_folder
 
 SHOWN = 25
@@ -43,7 +49,7 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
 
 def _print(difference: Difference) -> None:
     console = output()
-    console.print(table(summary(difference)))
+    console.print(table(changes_by_measure(difference)))
     console.print()
     changes = ranked(difference.changes)
     if changes:

@@ -22,8 +22,8 @@ from simmpp.studies.nebel98.figure2_data import (
     MEASURED,
     model_grid,
     model_times,
-    panels,
     rows_of,
+    winner_maps,
     write_model,
 )
 from simmpp.workload.workload import Workload
@@ -143,7 +143,7 @@ def _write(
     write_model(rows, out)
     costs = costs_of(config.machine_for(config.processors), workload)
     seed = config.settings.seeds[0]
-    maps = panels(costs, rays_of(workload), model_grid(config), ratios, seed)
+    maps = winner_maps(costs, rays_of(workload), model_grid(config), ratios, seed)
     heading = f"Analytical model of Nebel 1998, {workload.name}, {config.settings.machine.preset}"
     for path in draw_figure2(maps, heading, out):
         click.echo(f"wrote {path}")

@@ -24,7 +24,7 @@ from simmpp.commands.terminal import notice, output, progress_bars
 from simmpp.commands.tracing import workload
 from simmpp.config.config import Config, load_config
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
-from simmpp.run.record import record, write_record
+from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import row, write_rows
 from simmpp.run.summary import summary
 from simmpp.workload.sources import scene_of
@@ -150,7 +150,7 @@ def _simulate(
 
 
 def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    write_record(record(point, runs), out / "run.json")
+    write_record(record_of_run(point, runs), out / "run.json")
     write_rows([row(point, run) for run in runs], out / "results.csv")
 
 

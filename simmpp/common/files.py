@@ -1,4 +1,7 @@
-"""Files: equal rows give equal bytes, and what is written is there whole or not at all."""
+"""Tables of rows as files: equal rows give equal bytes, and a file is there whole or not at all.
+
+Also which files must not be opened at all.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ Row = dict[str, Any]
 def refuse_special(path: str | os.PathLike[str]) -> None:
     """Raise OSError if ``path`` is neither a file nor a folder; no such file is fine.
 
-    A named pipe would wait for a writer, a device may never end.
+    A named pipe waits for a writer, and a device may never end.
     """
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
         raise OSError(errno.EINVAL, "expected a regular file", os.fspath(path))

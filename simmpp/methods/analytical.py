@@ -28,8 +28,8 @@ def analytical(case: Case) -> dict[str, int]:
 def analytical_measured(case: Case) -> dict[str, int]:
     """n and r as counted by moving every ray of the workload on its placement."""
     dataflow: Dataflow = "object" if case.policy.name == "object" else "ray"
-    found = measured(case.workload, case.machine, case.place(), dataflow)
-    return _numbers(case, found.makespan_ps, found.lacking, found.steps)
+    counts = measured(case.workload, case.machine, case.place(), dataflow)
+    return _numbers(case, counts.makespan_ps, counts.lacking, counts.steps)
 
 
 def _numbers(case: Case, makespan_ps: int, lacking: int, steps: int) -> dict[str, int]:

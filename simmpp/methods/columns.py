@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-KEYS = ("scene", "processors", "fraction", "effective_fraction", "policy", "seed")
+PLACE = ("scene", "processors", "fraction")
+"""What names a point but its policy, with the columns that only a sweep changes."""
+KEYS = (*PLACE, "effective_fraction", "policy", "seed")
 METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = (

@@ -10,7 +10,7 @@ from simmpp.methods.case import Case
 from simmpp.methods.columns import NUMBERS
 
 
-def simulated(case: Case) -> dict[str, int]:
+def simulation(case: Case) -> dict[str, int]:
     """All integers of a run."""
     result = simulate(
         case.workload,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from simmpp.methods.analytical import analytical, analytical_measured
 from simmpp.methods.case import Case
-from simmpp.methods.simulation import simulated
+from simmpp.methods.simulation import simulation
 from simmpp.model.synchronous import DATAFLOWS
 
 
@@ -32,7 +32,7 @@ class Method:
 
 
 METHODS: dict[str, Method] = {
-    "simulate": Method(simulated, most_seeds=None),
+    "simulate": Method(simulation, most_seeds=None),
     "analytical": Method(analytical, DATAFLOWS, is_placed=False, uses_engine=False),
     "analytical-measured": Method(analytical_measured, DATAFLOWS, uses_engine=False),
 }

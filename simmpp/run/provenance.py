@@ -42,11 +42,11 @@ def difference(
     flat_a, flat_b = _flat(a), _flat(b)
     keys = [key for key in {**flat_a, **flat_b} if flat_a.get(key) != flat_b.get(key)]
     keys = [key for key in keys if not _has_digest(flat_a, flat_b, key)] or keys
-    shown = [
+    parts = [
         f"{key} is {_text(flat_a, key)} {name_a}, {_text(flat_b, key)} {name_b}" for key in keys[:3]
     ]
     more = [f"and {len(keys) - 3} more"] if len(keys) > 3 else []
-    return "; ".join(shown + more)
+    return "; ".join(parts + more)
 
 
 def _has_digest(a: Mapping[str, Any], b: Mapping[str, Any], key: str) -> bool:

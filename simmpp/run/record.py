@@ -1,36 +1,69 @@
-"""``run.json``: everything about a run, so that it can be repeated and never mixed up."""
+"""``run.json``: what the results in a folder are of, so that they can be repeated and not mixed up.
+
+Every folder says versions, configuration, digests of workloads, number of points and machines;
+sweeps and runs add their own. ``reproduce``, which has a configuration for each table, has versions
+and what was set.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-import platform
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from simmpp.config.config import described
+from simmpp.common.files import write_text
+from simmpp.config.config import Config, described
+from simmpp.machine.machine import Machine
+from simmpp.methods.simulation import integers
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
-from simmpp.run.rows import numbers, row
+from simmpp.run.provenance import all_versions
+from simmpp.run.rows import row
 from simmpp.run.summary import imbalance, utilisation
 
-LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh")
+IRRELEVANT_TO_ROWS = ("check",)
+"""Keys of a configuration that decide no row."""
 
 
-def record(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
-    """The configuration with all its defaults, versions, and every number of every policy."""
-    workload = point.workload
+def recorded(config: Config) -> dict[str, Any]:
+    """The configuration with all its defaults, without what decides no row."""
+    return {k: v for k, v in described(config).items() if k not in IRRELEVANT_TO_ROWS}
+
+
+def record(
+    config: Config,
+    workloads: Mapping[str, Sequence[str]],
+    machines: Iterable[Machine],
+    points: int,
+    further: Mapping[str, Any],
+) -> dict[str, Any]:
+    """The content of a ``run.json``; nothing in it depends on when, where or how fast it ran.
+
+    ``workloads`` are the digests of each scene's, by its name; equal machines are there once.
+    """
+    constants: dict[str, dict[str, Any]] = {}
+    for machine in machines:
+        values = asdict(machine)
+        constants.setdefault(json.dumps(values), values)
     return {
-        "versions": {"python": platform.python_version()} | {n: version(n) for n in LIBRARIES},
-        "config": described(point.config),
-        "machine": asdict(point.machine),
+        "versions": all_versions(),
+        "config": recorded(config),
+        "workloads": dict(workloads),
+        "points": points,
+        **further,
+        "machines": list(constants.values()),
+    }
+
+
+def record_of_run(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
+    """That of a run, with the workload's size and every number of every policy."""
+    workload = point.workload
+    further = {
         "seed": point.seed,
         "workload": {
-            "name": workload.name,
-            "digest": workload.digest,
             "picture": list(workload.picture),
             "rays": workload.n_rays,
             "tests": workload.n_tests,
@@ -40,6 +73,8 @@ def record(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
         "bound_ps": point.bound_ps,
         "policies": [_policy(point, run, list(runs)) for run in runs],
     }
+    workloads = {workload.name: [workload.digest]}
+    return record(point.config, workloads, [point.machine], len(runs), further)
 
 
 def _policy(point: Point, run: PolicyRun, runs: list[PolicyRun]) -> dict[str, Any]:
@@ -55,7 +90,7 @@ def _policy(point: Point, run: PolicyRun, runs: list[PolicyRun]) -> dict[str, An
         "time_profit_against_replicated": ceiling
         and _finite(ratio(ceiling.result.makespan_ps, result.makespan_ps)),
         "message_profit": _finite(ratio(base.messages, result.messages)),
-        **numbers(run),
+        **integers(result),
         "effective_fraction": row(point, run)["effective_fraction"],
         "messages_received": result.messages_received,
         "utilisation": {"min": share.min(), "mean": share.mean(), "max": share.max()},
@@ -75,7 +110,14 @@ def _finite(value: float) -> float | str:
     return value if math.isfinite(value) else "inf"
 
 
-def write_record(content: dict[str, Any], path: Path) -> None:
+def write_record(content: Mapping[str, Any], path: Path) -> None:
     """Write ``run.json``."""
-    text = json.dumps(content, indent=1, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8", newline="\n")
+    write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", path)
+
+
+def read_record(path: Path) -> dict[str, Any]:
+    """Read it; raises OSError, or ValueError if it is no JSON object."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    if not isinstance(content, dict):
+        raise ValueError(f"{path.name}: expected a JSON object")
+    return content

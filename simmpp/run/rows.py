@@ -1,37 +1,62 @@
-"""Rows of ``results.csv`` from runs, and their order."""
+"""Rows of ``results.csv``: how one is made, in which order they are written, how they are found.
+
+Rows are known by their *place* (all that names a point but its policy), their policy and their
+seed. Profits compare two policies of one place seed by seed, for policies share a seed's draws.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
-from simmpp.methods.columns import KEYS, METHOD, result_columns
+from simmpp.config.config import Config
+from simmpp.methods.columns import KEYS, METHOD, NUMBERS, result_columns
 from simmpp.methods.simulation import integers
+from simmpp.methods.table import METHODS
 from simmpp.run.point import Point, PolicyRun
 
+RESULTS, PARQUET = "results.csv", "results.parquet"
+PROFITS, TIMINGS, RECORD = "profits.csv", "timings.csv", "run.json"
+"""Files of a folder of results."""
 
-def numbers(run: PolicyRun) -> dict[str, int]:
-    """The integers of a run, by column."""
-    return integers(run.result)
+Seeds = dict[int, Row]
+"""The rows of one policy at one place."""
+Places = dict[tuple[Hashable, ...], dict[str, Seeds]]
+"""Rows by place and policy."""
+
+
+def point_row(
+    config: Config,
+    scene: str,
+    policy: str,
+    seed: int,
+    numbers: Mapping[str, int],
+    effective_fraction: float,
+    error: str = "",
+) -> Row:
+    """The row of a point; a memory given in bytes has no fraction, a failed point no numbers."""
+    settings, memory = config.settings, config.memory
+    return {
+        "scene": scene,
+        "processors": config.processors,
+        "fraction": "" if memory.bytes is not None else float(memory.fraction),
+        "effective_fraction": "" if error else effective_fraction,
+        "policy": policy,
+        "seed": seed,
+        "method": settings.method,
+        "engine": settings.engine if METHODS[settings.method].uses_engine else "",
+        **dict.fromkeys(NUMBERS, ""),
+        **numbers,
+        "error": error,
+    }
 
 
 def row(point: Point, run: PolicyRun) -> Row:
-    """The row of one policy at one point; a memory given in bytes has no fraction."""
-    memory = point.config.memory
+    """The row of one policy that was run at one point."""
     effective = 1.0 if run.all_resident else point.placement.effective_fraction
-    return {
-        "scene": point.workload.name,
-        "processors": point.machine.processors,
-        "fraction": "" if memory.bytes is not None else float(memory.fraction),
-        "effective_fraction": effective,
-        "policy": run.parameters.title,
-        "seed": point.seed,
-        "method": point.config.settings.method,
-        "engine": run.result.engine,
-        **numbers(run),
-        "error": "",
-    }
+    scene, numbers = point.workload.name, integers(run.result)
+    return point_row(point.config, scene, run.parameters.title, point.seed, numbers, effective)
 
 
 def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
@@ -42,3 +67,23 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 def write_rows(rows: Iterable[Row], path: Path, further: Sequence[str] = ()) -> None:
     """Write ``results.csv``, sorted."""
     write_csv(in_order(rows, further), result_columns(further), path)
+
+
+def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:
+    """Rows by the columns ``names`` of their place, by policy and seed; of equal ones the last."""
+    places: Places = {}
+    for row in rows:
+        policies = places.setdefault(tuple(row[name] for name in names), {})
+        policies.setdefault(row["policy"], {})[row["seed"]] = row
+    return places
+
+
+def finished(seeds: Seeds) -> Seeds:
+    """Those that did not fail."""
+    return {seed: row for seed, row in seeds.items() if not row["error"]}
+
+
+def pairs(above: Seeds, below: Seeds) -> list[tuple[Row, Row]]:
+    """The two rows of each seed that both have finished, seeds rising."""
+    upper, lower = finished(above), finished(below)
+    return [(upper[seed], lower[seed]) for seed in sorted(upper.keys() & lower.keys())]

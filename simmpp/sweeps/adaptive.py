@@ -1,9 +1,19 @@
-"""What a sweep asks for as its outcomes come in: more seeds of a point, more points of an axis.
+"""Adaptive sampling: more seeds of a point, more points of an axis, as outcomes come in.
 
 All of it follows from the plan and the outcomes of what was asked for, in whatever order they
 came: each comparison decides on its seeds when all that it asked for is finished, and axes are
 refined in rounds, when all comparisons have the seeds that they need. So an interrupted sweep that
 is continued ends where an uninterrupted one does. A comparison with a failed task stays as it is.
+
+An example: tolerance 2 %, refined, x in .1, .5, .9, object and concurrent dataflow::
+
+    begin         asks for 3 x (2 policies) x (seeds 0 to 7) = 48 tasks
+    .9 is back    its 8 profits are within 2 %: settled
+    .1 is back    6 % after 8 seeds: 9 times as many would do; asks for as many again, 8 to 15
+    .5 is back    2.5 %: 13 seeds would do; asks for 8 to 12, and others run meanwhile
+    .1 is back    5 % after 16: asks for 16 to 31, and so on until it is settled, as .5 is
+    all settled   the round ends: between .1 and .5 a line is off by 4 %: asks for 8 seeds of x = .3
+    .3 settled    the next round: lines are good enough everywhere, so nothing is asked for
 """
 
 from __future__ import annotations
@@ -50,14 +60,19 @@ class Group:
         return self.points[0].point.comparison
 
 
-class Frontier:
-    """The points that are asked for, and which of them wait for outcomes."""
+class AdaptiveSampler:
+    """The points that are asked for, and which of them wait for outcomes.
+
+    Its neighbour is AverageLearner1D of the package adaptive, which has neither paired ratios nor
+    results that are the same in whatever order outcomes come.
+    """
 
     def __init__(self, plan: Plan, results: Results) -> None:
         self._plan, self._results = plan, results
         self._settings, self._refined = plan.config.settings, refined_keys(plan.config)
         self._groups = _groups(plan)
         self._unsettled = set(self._groups)
+        # equal points of several comparisons are one task, so an outcome may be awaited by many
         self._waiting: dict[str, list[Group]] = {}
         self._asked, self._failed = set[str](), set[str]()
         for group in self._groups:
@@ -74,7 +89,7 @@ class Frontier:
         """Tasks that are asked for and not finished; neighbours share what they can."""
         return [task for task in self.plan.tasks if not self._results.finished(task.key)]
 
-    def take(self, outcome: Outcome) -> list[Task]:
+    def tell(self, outcome: Outcome) -> list[Task]:
         """What an outcome, which the results have by now, makes the sweep ask for."""
         groups = self._waiting.pop(outcome.key, [])
         for group in groups:
@@ -88,6 +103,7 @@ class Frontier:
     def _settle(self, groups: Iterable[Group]) -> list[Task]:
         """Let comparisons decide on their seeds; when all have, look at the axes."""
         tasks = [task for group in groups for task in self._advance(group)]
+        # a loop, for in a continued sweep all that a round asks for may be finished already
         while not self._unsettled and (added := list(self._divided())):
             self._groups += added
             self._unsettled.update(added)
@@ -110,12 +126,12 @@ class Frontier:
 
     def _ask(self, group: Group, points: Iterable[PlannedPoint]) -> list[Task]:
         """Wait for the tasks of points; returns those that nobody has asked for."""
-        tasks = {each.task.key: each.task for each in points}
+        tasks = {point.task.key: point.task for point in points}
         missing = [key for key in tasks if not self._results.finished(key)]
         for key in missing:
             group.missing.add(key)
             self._waiting.setdefault(key, []).append(group)
-        if self._failed.intersection(missing):
+        if self._failed.intersection(missing):  # another comparison has tried it
             self._fail(group)
         new = [tasks[key] for key in missing if key not in self._asked]
         self._asked.update(missing)
@@ -135,9 +151,9 @@ class Frontier:
     def _profits(self, group: Group) -> dict[tuple[str, str], list[float]]:
         """The values of the seeds, in their order, by policy and measure."""
         of_policy: dict[str, list[dict[str, int]]] = {}
-        for each in group.points:
-            numbers = self._results.outcomes[each.task.key].numbers
-            of_policy.setdefault(each.point.policy.title, []).append(numbers)
+        for planned in group.points:
+            numbers = self._results.outcomes[planned.task.key].numbers
+            of_policy.setdefault(planned.point.policy.title, []).append(numbers)
         references = of_policy.pop(REFERENCE)
         return {
             (title, measure): profits_of(list(zip(references, runs, strict=True)), column)
@@ -164,7 +180,7 @@ class Frontier:
         line = sorted(line, key=lambda group: value_of(group.comparison, key))
         xs = [value_of(group.comparison, key) for group in line]
         profits = [self._profits(group) for group in line]
-        curves = [[each[name] for each in profits] for name in profits[0]]
+        curves = [[of_point[name] for of_point in profits] for name in profits[0]]
         for i in too_coarse(xs, curves, self._settings.tolerance or Fraction(1)):
             depth = 1 + max(group.depths.get(key, 0) for group in line[i : i + 2])
             value = between(xs[i], xs[i + 1], whole=key != FRACTION)
@@ -189,9 +205,10 @@ def _planned(
 
 def _groups(plan: Plan) -> list[Group]:
     """The points of a plan by comparison, in its order."""
-    found: dict[int, list[PlannedPoint]] = {}
-    for each in plan.points:
-        found.setdefault(id(each.point.comparison), []).append(each)
+    groups: dict[int, list[PlannedPoint]] = {}
+    for planned in plan.points:
+        groups.setdefault(id(planned.point.comparison), []).append(planned)
     return [
-        Group(points, {}, len({each.point.seed for each in points})) for points in found.values()
+        Group(points, {}, len({planned.point.seed for planned in points}))
+        for points in groups.values()
     ]

@@ -1,4 +1,8 @@
-"""Worker processes on this machine: begun early, gone with the sweep however it ends."""
+"""Who runs the tasks of a sweep: this process, processes beside it, or the workers of a cluster.
+
+Nothing here imports the simulation: ``simmpp sweep`` begins to start its processes before it has
+imported the rest itself.
+"""
 
 from __future__ import annotations
 
@@ -9,32 +13,53 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import PRELOAD
 
-# --- who runs the tasks of a sweep: anything that takes one and gives its outcome back later ---
-
+if TYPE_CHECKING:
+    from simmpp.sweeps.journal import Outcome
+    from simmpp.sweeps.task import Task
 
 P = ParamSpec("P")
 T = TypeVar("T")
+RunTask = Callable[["Task"], "Outcome"]
+"""What workers do with a task; must be picklable where they are other processes."""
+
+START_METHOD = "spawn" if sys.platform == "win32" else "forkserver"
+"""Of processes: a fork of this one would copy the locks of its threads."""
+CONNECT_S, WORKERS_S = 10, 60
+"""Seconds to wait for a cluster's scheduler, and for its first worker."""
 
 
-class Crew:
-    """Anything with the interface of ``concurrent.futures.Executor``."""
+class Pool:
+    """An executor as in ``concurrent.futures``, what its workers do, and how much it is given."""
 
-    is_elsewhere = False
-    """Workers may have other versions installed than this process."""
-
-    def __init__(self, executor: Executor, most_in_flight: int) -> None:
-        self.executor = executor
+    def __init__(self, executor: Executor, most_in_flight: int, run: RunTask) -> None:
+        self.executor, self.run = executor, run
         self.most_in_flight = most_in_flight
         """Tasks that are given out and not back: enough to keep all busy, no more to be lost."""
+
+    def submit(self, task: Task) -> Future[Outcome]:
+        """Give a task out; to a broken executor it is lost like those already in flight."""
+        try:
+            return self.executor.submit(self.run, task)
+        except BrokenExecutor as error:
+            future: Future[Outcome] = Future()
+            future.set_exception(error)
+            return future
 
     def renew(self) -> None:
         """Make the executor anew after one of its workers died, if it doesn't do so itself."""
@@ -44,7 +69,17 @@ class Crew:
         self.executor.shutdown(wait=False, cancel_futures=True)
 
 
-class Here(Executor):
+def pool_for(workers: int, cluster: str | None, run: RunTask) -> Pool:
+    """A cluster's workers, or that many processes; one works right here.
+
+    Raises ConfigError if there is no such cluster.
+    """
+    if cluster is not None:
+        return DaskCluster(cluster, run)
+    return Pool(SerialExecutor(), 1, run) if workers == 1 else LocalProcesses(workers, run)
+
+
+class SerialExecutor(Executor):
     """Runs each task when it is given."""
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
@@ -54,22 +89,22 @@ class Here(Executor):
         return future
 
 
-METHOD = "spawn" if sys.platform == "win32" else "forkserver"
-"""A fork of this process would copy the locks of its threads."""
+class LocalProcesses(Pool):
+    """Processes on this machine, which end with this one however it ends.
 
+    Each holds one end of a pipe, the leash, and ends when the other end is gone: a process that is
+    killed can't tell its children, but its end of the pipe is closed for it.
+    """
 
-class Processes(Crew):
-    """Processes on this machine, which end with this one however it ends."""
-
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, run: RunTask) -> None:
         self._workers = workers
-        executor, self._leash = _pool(workers)
-        super().__init__(executor, 2 * workers)
+        executor, self._leash = _leashed(workers)
+        super().__init__(executor, 2 * workers, run)  # one runs, one waits beside it
 
     def renew(self) -> None:
         """A pool is broken for good when one of its processes dies."""
         self.close()
-        self.executor, self._leash = _pool(self._workers)
+        self.executor, self._leash = _leashed(self._workers)
 
     def close(self) -> None:
         """Workers end when the leash does, those that are only starting included."""
@@ -82,29 +117,31 @@ def start_server() -> None:
 
     The workers are forks of this server, so they need not load it again.
     """
-    if METHOD == "forkserver":
-        context: Any = multiprocessing.get_context(METHOD)
+    if START_METHOD == "forkserver":
+        context: Any = multiprocessing.get_context(START_METHOD)
         context.set_forkserver_preload([PRELOAD])
         with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
             forkserver.ensure_running()
 
 
-def _pool(workers: int) -> tuple[Executor, Connection]:
-    """A pool whose processes are there, and what holds them."""
+def _leashed(workers: int) -> tuple[Executor, Connection]:
+    """An executor whose processes are there, and what holds them."""
     from simmpp.common.compiled import cache_folder
 
     start_server()
-    context: Any = multiprocessing.get_context(METHOD)
+    context: Any = multiprocessing.get_context(START_METHOD)
     held, leash = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
+    executor = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
     interrupts: list[int] = []
-    with _sigint(lambda number, frame: interrupts.append(number)):  # half a process is untidy
-        wait([pool.submit(os.getpid) for _ in range(workers)])
+    # Ctrl-C while a process starts would leave half of one, which no leash holds yet: it is
+    # noted, and raised when all are there and can be let go
+    with _sigint(lambda number, frame: interrupts.append(number)):
+        wait([executor.submit(os.getpid) for _ in range(workers)])
     if interrupts:
         leash.close()
-        pool.shutdown()
+        executor.shutdown()
         raise KeyboardInterrupt
-    return pool, leash
+    return executor, leash
 
 
 @contextmanager
@@ -129,37 +166,15 @@ def _begin(held: Connection, cache: str) -> None:
 
 def _end_with(held: Connection) -> None:
     try:
-        held.recv_bytes()
+        held.recv_bytes()  # nothing is ever sent: this returns when the other end is closed
     except (EOFError, OSError):
-        os._exit(1)
+        os._exit(1)  # from a thread, and with a task that may take another hour: no clean way out
 
 
-# --- the crew that a user asks for: this process, others beside it, or a cluster ---
-
-
-def crew_for(workers: int, cluster: str | None) -> Crew:
-    """A cluster's workers, or that many processes; one works right here.
-
-    Raises ConfigError if there is no such cluster.
-    """
-    if cluster is not None:
-        return Cluster(cluster)
-    return Crew(Here(), 1) if workers == 1 else Processes(workers)
-
-
-# --- the workers of a Dask cluster, which may be on other machines ---
-
-
-CONNECT_S, WORKERS_S = 10, 60
-"""Seconds to wait for a cluster's scheduler, and for its first worker."""
-
-
-class Cluster(Crew):
+class DaskCluster(Pool):
     """The workers of a Dask scheduler, which gives the tasks of a dead worker to others itself."""
 
-    is_elsewhere = True
-
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, run: RunTask) -> None:
         try:
             from distributed import Client
         except ImportError:
@@ -175,7 +190,8 @@ class Cluster(Crew):
         except (OSError, ValueError, TimeoutError) as error:
             raise ConfigError(f"--cluster: value {address!r}: {_line(error)}") from None
         threads = sum(self._client.nthreads().values())
-        super().__init__(self._client.get_executor(pure=False), 2 * threads)
+        # not pure: Dask would give equal tasks, as after a failure, the outcome of the first
+        super().__init__(self._client.get_executor(pure=False), 2 * threads, run)
 
     def close(self) -> None:
         """Leave the cluster as it was."""

@@ -39,7 +39,7 @@ class Comparison:
     def with_reference(self) -> list[PolicyParameters]:
         """What profits are measured against comes first, named or not."""
         reference = self.policies.get(REFERENCE, PolicyParameters(REFERENCE))
-        return [reference, *(each for title, each in self.policies.items() if title != REFERENCE)]
+        return [reference, *(p for title, p in self.policies.items() if title != REFERENCE)]
 
     def points(self, seeds: Iterable[int]) -> list[GridPoint]:
         """Every policy with each of these seeds."""
@@ -81,7 +81,7 @@ def grid(config: Config) -> list[GridPoint]:
     """
     seeds = first_seeds(config.settings)
     _require_feasible(config, len(seeds))
-    return [point for each in comparisons(config) for point in each.points(seeds)]
+    return [point for comparison in comparisons(config) for point in comparison.points(seeds)]
 
 
 def _require_feasible(config: Config, n_seeds: int) -> None:
@@ -96,25 +96,25 @@ def _require_feasible(config: Config, n_seeds: int) -> None:
 
 def comparisons(config: Config) -> list[Comparison]:
     """Combinations of the axes; those that differ in their policies only are one."""
-    found: dict[str, tuple[Config, Mapping[str, Value], dict[str, PolicyParameters]]] = {}
+    combinations: dict[str, tuple[Config, Mapping[str, Value], dict[str, PolicyParameters]]] = {}
     for point, swept in _combinations(config):
         key = json.dumps([described(point) | {"policy": None}, swept], sort_keys=True)
-        _, _, policies = found.setdefault(key, (point, swept, {}))
+        _, _, policies = combinations.setdefault(key, (point, swept, {}))
         for policy in point.policies:
             if policies.setdefault(policy.title, policy) != policy:
                 raise ConfigError(
                     f"sweep: two policies are called {policy.title!r}: expected a label for each"
                 )
-    return [Comparison(*each) for each in found.values()]
+    return [Comparison(*parts) for parts in combinations.values()]
 
 
 def _combinations(config: Config) -> Iterator[tuple[Config, Mapping[str, Value]]]:
     axes = axes_of(config.settings.sweep)
     columns = further_columns(config)
     for numbers in product(*(range(len(axis)) for axis in axes.values())):
-        chosen = dict(zip(axes, numbers, strict=True))
-        names = {k: v for name, n in chosen.items() for k, v in axes[name][n].columns.items()}
-        yield point_at(config, axes, chosen), {name: cell(names[name]) for name in columns}
+        choices = dict(zip(axes, numbers, strict=True))
+        values = {k: v for name, n in choices.items() for k, v in axes[name][n].columns.items()}
+        yield point_at(config, axes, choices), {name: cell(values[name]) for name in columns}
 
 
 def cell(value: object) -> Value:

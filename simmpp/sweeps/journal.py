@@ -13,15 +13,34 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
+from filelock import FileLock, Timeout
+
 from simmpp.common.errors import ConfigError
 from simmpp.run.provenance import difference
 
-# --- what a simulation leaves behind: the integers of its row, or why it failed ---
+FILE, LOCK = "points.jsonl", "points.jsonl.lock"
+FORMAT = 1
+PATIENCE_S = 0.2
+"""Whoever looks whether a sweep is at work holds the lock as well, for less than that."""
+
+
+def is_at_work(folder: Path) -> bool:
+    """Whether a sweep works in a folder now."""
+    lock = folder / LOCK
+    try:
+        if lock.exists():  # the lock file of a sweep that ended stays: without it none ever began
+            with FileLock(lock, timeout=0):
+                pass
+    except Timeout:
+        return True
+    except OSError:  # not ours to write, so it can't be said; nothing here depends on it
+        return False
+    return False
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """One finished task."""
+    """What a finished task leaves behind: the integers of its row, or why it failed."""
 
     key: str
     """The task's."""
@@ -34,24 +53,6 @@ class Outcome:
     """The same on the processor, whatever else runs beside it."""
     error: str = ""
     """One line; empty if all went well."""
-
-
-FILE = "points.jsonl"
-FORMAT = 1
-
-
-def is_at_work(folder: Path) -> bool:
-    """Whether a sweep works in a folder now; never where files can't be locked, as on Windows."""
-    try:
-        import fcntl
-
-        with open(folder / FILE, "rb") as file:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except (ImportError, OSError):
-        return False
-    return False
 
 
 class Results:
@@ -96,11 +97,15 @@ class Journal(Results):
             self._file: IO[bytes] = open(self.path, "a+b")  # noqa: SIM115
         except OSError as error:
             raise ConfigError(f"can't be written: {error.strerror}", where=str(self.path)) from None
+        self._lock = FileLock(folder / LOCK, timeout=PATIENCE_S)
         try:
-            self._lock()
+            self._lock.acquire()
             self._read({"format": FORMAT, **identity})
+        except Timeout:
+            self.close()
+            raise ConfigError("another sweep is at work here", where=str(self.path)) from None
         except BaseException:
-            self._file.close()
+            self.close()
             raise
 
     def add(self, outcome: Outcome) -> None:
@@ -116,21 +121,12 @@ class Journal(Results):
     def close(self) -> None:
         """Let others work in the folder."""
         self._file.close()
+        self._lock.release()
 
     def _append(self, entry: Mapping[str, Any]) -> None:
         self._file.write(json.dumps(entry, allow_nan=False).encode() + b"\n")
         self._file.flush()
-        os.fsync(self._file.fileno())
-
-    def _lock(self) -> None:
-        try:
-            import fcntl
-        except ImportError:  # not on Windows
-            return
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise ConfigError("another sweep is at work here", where=str(self.path)) from None
+        os.fsync(self._file.fileno())  # a flushed line survives this process, not a power cut
 
     def _read(self, identity: Mapping[str, Any]) -> None:
         self._file.seek(0)
@@ -158,8 +154,8 @@ class Journal(Results):
             raise self._damaged(number)
         return entry
 
-    def _compare(self, found: Mapping[str, Any], identity: Mapping[str, Any]) -> None:
-        if problem := difference(found, json.loads(json.dumps(identity))):
+    def _compare(self, recorded: Mapping[str, Any], identity: Mapping[str, Any]) -> None:
+        if problem := difference(recorded, json.loads(json.dumps(identity))):
             raise ConfigError(
                 f"holds results of another sweep ({problem}); expected another --out, or an empty "
                 "folder",

@@ -1,4 +1,8 @@
-"""A sweep before it runs: its points, what has to be simulated for them, and what that is of."""
+"""A sweep before it runs: its points, what has to be simulated for them, and what that is of.
+
+What does not go together is refused here, before anything runs: two points of one name, a policy
+that a method does not know, a key that someone set and that the sweep sets otherwise at each point.
+"""
 
 from __future__ import annotations
 
@@ -11,18 +15,19 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.strict import misplaced
 from simmpp.config.axes import SAME, axes_of, keys_of
-from simmpp.config.config import Config, Source, described
-from simmpp.methods.columns import KEYS, METHOD, NUMBERS
+from simmpp.config.config import Config, Source
+from simmpp.methods.columns import KEYS, METHOD
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
-from simmpp.run.rows import in_order
+from simmpp.run.record import record, recorded
+from simmpp.run.rows import in_order, point_row
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.task import Task, task_of
 
-IRRELEVANT = ("check",)
-"""Keys that decide no row."""
+SET = "--set "
+"""What the places of keys begin with that were set on the command line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,21 +59,25 @@ class Plan:
     @property
     def tasks(self) -> list[Task]:
         """What is to be simulated, once each; neighbours share a workload and a placement."""
-        tasks = {each.task.key: each.task for each in self.points}
-        places: dict[str, dict[str, list[Task]]] = {}
+        tasks = {planned.task.key: planned.task for planned in self.points}
+        workloads: dict[str, dict[str, list[Task]]] = {}
         for task in tasks.values():
-            of_workload = places.setdefault(task.digest, {})
-            of_workload.setdefault(task.placement_key, []).append(task)
-        return [task for groups in places.values() for group in groups.values() for task in group]
+            placements = workloads.setdefault(task.digest, {})
+            placements.setdefault(task.placement_key, []).append(task)
+        return [
+            task
+            for placements in workloads.values()
+            for sharing in placements.values()
+            for task in sharing
+        ]
 
     @property
     def identity(self) -> dict[str, Any]:
         """What must be equal for results to be continued."""
-        config = {k: v for k, v in described(self.config).items() if k not in IRRELEVANT}
-        keys = "".join(sorted({each.task.key for each in self.points}))
+        keys = "".join(sorted({planned.task.key for planned in self.points}))
         return {
             "versions": result_versions(),
-            "config": config,
+            "config": recorded(self.config),
             "workloads": self.workloads,
             "points": hashlib.sha256(keys.encode()).hexdigest(),
         }
@@ -76,23 +85,33 @@ class Plan:
     @property
     def workloads(self) -> dict[str, list[str]]:
         """Digests of the workloads of each scene, by its name."""
-        names = dict.fromkeys(each.scene for each in self.points)
-        pairs = {(each.scene, each.task.digest) for each in self.points}
+        names = dict.fromkeys(planned.scene for planned in self.points)
+        pairs = {(planned.scene, planned.task.digest) for planned in self.points}
         return {name: sorted(digest for scene, digest in pairs if scene == name) for name in names}
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """The content of ``run.json``."""
+        configs = (planned.point.config for planned in self.points)
+        machines = (config.machine_for(config.processors) for config in configs)
+        further = {"simulations": len(self.tasks), "further_columns": list(self.further)}
+        return record(self.config, self.workloads, machines, len(self.points), further)
 
     def rows(self, outcomes: Mapping[str, Outcome]) -> list[Row]:
         """Rows of the points that are finished, sorted by their keys."""
-        done = (each for each in self.points if each.task.key in outcomes)
-        return in_order((_row(each, outcomes[each.task.key]) for each in done), self.further)
+        done = (planned for planned in self.points if planned.task.key in outcomes)
+        return in_order((_row(p, outcomes[p.task.key]) for p in done), self.further)
 
     def timings(self, outcomes: Mapping[str, Outcome], trace_s: Mapping[str, float]) -> list[Row]:
         """Seconds that each of these rows took; tracing is empty where the rays were cached."""
         times: list[Row] = []
-        for each in self.points:
-            if (outcome := outcomes.get(each.task.key)) is not None:
-                row = _row(each, outcome)
-                row |= {"trace_s": trace_s.get(each.task.digest, ""), "wall_s": outcome.wall_s}
-                times.append(row)
+        for planned in self.points:
+            if (outcome := outcomes.get(planned.task.key)) is not None:
+                seconds = {
+                    "trace_s": trace_s.get(planned.task.digest, ""),
+                    "wall_s": outcome.wall_s,
+                }
+                times.append(_row(planned, outcome) | seconds)
         return in_order(times, self.further)
 
     @property
@@ -101,7 +120,7 @@ class Plan:
         return (*KEYS, *self.further, "trace_s", "wall_s")
 
 
-def plan(config: Config) -> Plan:
+def plan_of(config: Config) -> Plan:
     """Work out what a sweep needs.
 
     Raises InputError for values that do not go together, and for scenes that can't be read.
@@ -111,10 +130,10 @@ def plan(config: Config) -> Plan:
     points: list[PlannedPoint] = []
     for point in grid(config):
         _refuse_unknown(point)
-        made_of = repr((point.config.scene_spec, point.config.picture))
-        if made_of not in workloads:
-            workloads[made_of] = point.config.ray_source.name_and_digest(point.config.picture)
-        name, digest = workloads[made_of]
+        inputs = repr((point.config.scene_spec, point.config.picture))
+        if inputs not in workloads:
+            workloads[inputs] = point.config.ray_source.name_and_digest(point.config.picture)
+        name, digest = workloads[inputs]
         points.append(PlannedPoint(point, task_of(point, digest), name))
     further = further_columns(config)
     _check_names(points, further)
@@ -140,39 +159,27 @@ def _check_names(points: list[PlannedPoint], further: tuple[str, ...]) -> None:
     """Raise ConfigError if points that differ would have one name, as two files of one name do."""
     names = [name for name in (*KEYS, *further, METHOD) if name != "effective_fraction"]
     tasks: dict[tuple[object, ...], str] = {}
-    for each in points:
-        row = _row(each, Outcome(each.task.key))
+    for planned in points:
+        row = _row(planned, Outcome(planned.task.key))
         key = tuple(row[name] for name in names)
-        if tasks.setdefault(key, each.task.key) != each.task.key:
+        if tasks.setdefault(key, planned.task.key) != planned.task.key:
             text = ", ".join(f"{name} {row[name]}" for name in names)
             raise ConfigError(f"sweep: two different points are both called {text}; name them")
 
 
 def _row(planned: PlannedPoint, outcome: Outcome) -> Row:
-    """The row of a point; that of a failed one has its error in place of numbers."""
+    """The row of a point, and which simulation it is of."""
     point = planned.point
-    memory, settings = point.config.memory, point.config.settings
-    return {
-        "scene": planned.scene,
-        "processors": point.config.processors,
-        "fraction": "" if memory.bytes is not None else float(memory.fraction),
-        "effective_fraction": "" if outcome.error else outcome.effective_fraction,
-        "policy": point.policy.title,
-        "seed": point.seed,
-        **point.swept,
-        "method": settings.method,
-        "engine": settings.engine if METHODS[settings.method].uses_engine else "",
-        **dict.fromkeys(NUMBERS, ""),
-        **outcome.numbers,
-        "error": outcome.error,
-        SIMULATION: planned.task.key,
-    }
-
-
-# --- keys that someone set and that a sweep sets otherwise at every point: refused, not ignored ---
-
-
-SET = "--set "
+    row = point_row(
+        point.config,
+        planned.scene,
+        point.policy.title,
+        point.seed,
+        outcome.numbers,
+        outcome.effective_fraction,
+        outcome.error,
+    )
+    return {**row, **point.swept, SIMULATION: planned.task.key}
 
 
 def refuse_overruled(config: Config) -> None:

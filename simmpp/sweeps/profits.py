@@ -12,9 +12,10 @@ from statistics import fmean
 from typing import NamedTuple
 
 from simmpp.common.files import Row, sort_key
-from simmpp.methods.columns import KEYS
+from simmpp.methods.columns import KEYS, PLACE
 from simmpp.run.point import REFERENCE
 from simmpp.run.profit import ratio
+from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.stopping import corrected_interval
 
@@ -23,6 +24,8 @@ MEASURES = {"time_profit": "makespan_ps", "message_profit": "messages"}
 SIMULATION = "simulation"
 """What rows may tell besides their columns: the simulation that they are of. A point whose seeds
 share one has nothing that is drawn."""
+ROUNDING = 1e-9
+"""A half-width that is exactly the tolerance may be rounded to more."""
 STATISTICS = ("", "_low", "_high", "_min", "_max")
 
 
@@ -45,72 +48,65 @@ def profit_rows(
     needs two seeds and finite profits, and is empty otherwise; with a ``tolerance`` it makes up
     for a number of seeds that was chosen by their values. What rows do not know is empty, too.
     """
-    names = [name for name in _keys(further) if name != "effective_fraction"]
-    points: dict[tuple[object, ...], dict[int, Row]] = {}
-    for row in rows:
-        points.setdefault(tuple(row[name] for name in names), {})[row["seed"]] = row
-    at = names.index("policy")
-    found = []
-    for key, by_seed in points.items():
-        references = points.get((*key[:at], REFERENCE, *key[at + 1 :]), {})
-        found.append(_over_seeds(by_seed, references, further, tolerance))
-    return sorted(found, key=lambda row: sort_key(row, _keys(further)))
+    profits: list[Row] = []
+    for policies in by_place(rows, (*PLACE, *further)).values():
+        references = policies.get(REFERENCE, {})
+        profits += [_over_seeds(of, references, further, tolerance) for of in policies.values()]
+    return profits_in_order(profits, further)
+
+
+def profits_in_order(profits: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
+    """Sorted by their keys."""
+    return sorted(profits, key=lambda row: sort_key(row, _keys(further)))
 
 
 def _over_seeds(
-    by_seed: dict[int, Row],
-    references: dict[int, Row],
-    further: Sequence[str],
-    tolerance: Fraction | None,
+    seeds: Seeds, references: Seeds, further: Sequence[str], tolerance: Fraction | None
 ) -> Row:
-    """The row of one policy at one point."""
-    good = [by_seed[seed] for seed in sorted(by_seed) if not by_seed[seed]["error"]]
-    pairs = [
-        (references[row["seed"]], row)
-        for row in good
-        if row["seed"] in references and not references[row["seed"]]["error"]
-    ]
-    first = next(iter(by_seed.values()))
-    result: Row = {name: first[name] for name in _keys(further)}
-    result["effective_fraction"] = _mean([row["effective_fraction"] for row in good])
-    result["n"] = len(pairs)
+    """The row of one policy at one place."""
+    any_row, both = next(iter(seeds.values())), pairs(references, seeds)
+    result: Row = {name: any_row[name] for name in _keys(further)}
+    effective = [row["effective_fraction"] for row in finished(seeds).values()]
+    result["effective_fraction"] = _mean(effective)
+    result["n"] = len(both)
     for measure, column in MEASURES.items():
-        values = profits_of(pairs, column)
-        bounds = _bounds(values, pairs, tolerance)
+        values = profits_of(both, column)
+        bounds = _bounds(values, both, tolerance)
         result |= {measure + name: value for name, value in _statistics(values, bounds).items()}
     # one PE with everything in memory does nothing but compute
-    known = [row for _, row in pairs if row["compute_ps"] != ""]
-    speedups = [ratio(row["compute_ps"], row["makespan_ps"]) for row in known]
+    speedups = [
+        ratio(row["compute_ps"], row["makespan_ps"]) for _, row in both if row["compute_ps"] != ""
+    ]
     result["speedup"] = _mean(speedups)
-    result["efficiency"] = _mean([speedup / first["processors"] for speedup in speedups])
+    result["efficiency"] = _mean([speedup / any_row["processors"] for speedup in speedups])
     return result
 
 
-def profits_of(pairs: Sequence[tuple[Row, Row]], column: str) -> list[float]:
+def profits_of(both: Sequence[tuple[Row, Row]], column: str) -> list[float]:
     """The ratio of a column of each seed's reference and run; none where one is not known."""
     return [
         ratio(base[column], row[column])
-        for base, row in pairs
+        for base, row in both
         if base[column] != "" and row[column] != ""
     ]
 
 
 def _bounds(
-    values: Sequence[float], pairs: Sequence[tuple[Row, Row]], tolerance: Fraction | None
+    values: Sequence[float], both: Sequence[tuple[Row, Row]], tolerance: Fraction | None
 ) -> tuple[float, float] | None:
     if not values or tolerance is None:
         return interval(values) if values else None
-    return corrected_interval(values, tolerance, is_drawn=_is_drawn(pairs))
+    return corrected_interval(values, tolerance, is_drawn=_is_drawn(both))
 
 
-def _is_drawn(pairs: Sequence[tuple[Row, Row]]) -> bool:
+def _is_drawn(both: Sequence[tuple[Row, Row]]) -> bool:
     """Whether the profit of another seed could be another one.
 
     Not so where all seeds are one simulation, where the run is its own reference, and where PEs
     hold either nothing but their own objects or all.
     """
-    simulations = {(base.get(SIMULATION), row.get(SIMULATION)) for base, row in pairs}
-    replicated = any(1 / row["processors"] < row["effective_fraction"] < 1 for _, row in pairs)
+    simulations = {(base.get(SIMULATION), row.get(SIMULATION)) for base, row in both}
+    replicated = any(1 / row["processors"] < row["effective_fraction"] < 1 for _, row in both)
     return replicated and len(simulations) > 1 and any(a != b for a, b in simulations)
 
 
@@ -120,29 +116,22 @@ def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, 
     Policies are compared over the points and seeds that all of them have finished; None as long as
     there are none.
     """
-    names = [name for name in (*_keys(further), "seed") if name != "effective_fraction"]
-    names.remove("policy")
-    points: dict[tuple[object, ...], dict[str, Row]] = {}
-    for row in rows:
-        if not row["error"]:
-            points.setdefault(tuple(row[name] for name in names), {})[row["policy"]] = row
-    titles = dict.fromkeys(policy for policies in points.values() for policy in policies)
-    common = [
-        policies
-        for policies in points.values()
-        if len(policies) == len(titles) and all(row["makespan_ps"] for row in policies.values())
-    ]
-    if REFERENCE not in titles or len(titles) == 1 or not common:
+    done = (row for row in rows if not row["error"])
+    places = by_place(done, (*PLACE, *further)).values()
+    titles = dict.fromkeys(title for policies in places for title in policies)
+    logarithms: dict[str, list[float]] = {title: [] for title in titles if title != REFERENCE}
+    for policies in places:
+        if len(policies) < len(titles) or REFERENCE not in titles:
+            continue
+        for seed in set.intersection(*map(set, policies.values())):
+            times_ps = {title: seeds[seed]["makespan_ps"] for title, seeds in policies.items()}
+            if all(times_ps.values()):
+                for title, values in logarithms.items():
+                    values.append(math.log(times_ps[REFERENCE] / times_ps[title]))
+    if not any(logarithms.values()):
         return None
-    means = {
-        title: fmean(
-            math.log(of[REFERENCE]["makespan_ps"] / of[title]["makespan_ps"]) for of in common
-        )
-        for title in titles
-        if title != REFERENCE
-    }
-    best = max(means, key=lambda title: means[title])
-    return best, math.exp(means[best])
+    best = max(logarithms, key=lambda title: fmean(logarithms[title]))
+    return best, math.exp(fmean(logarithms[best]))
 
 
 def _mean(values: Sequence[float]) -> float | str:
@@ -157,13 +146,6 @@ def _statistics(values: Sequence[float], bounds: tuple[float, float] | None) -> 
     return dict(zip(STATISTICS, numbers, strict=True))
 
 
-# --- which profits of a sweep with a tolerance are known that well, and which are not ---
-
-
-ROUNDING = 1e-9
-"""A half-width that is exactly the tolerance may be rounded to more."""
-
-
 class Missed(NamedTuple):
     """A profit whose interval is wider than the tolerance."""
 
@@ -176,13 +158,13 @@ class Missed(NamedTuple):
 
 def missed(profits: Iterable[Row], tolerance: Fraction) -> list[Missed]:
     """Profits that all the seeds there may be have not made known within the tolerance."""
-    found = [
+    known = [
         Missed(row, measure, (row[f"{measure}_high"] - row[f"{measure}_low"]) / 2 / row[measure])
         for row in profits
         for measure in MEASURES
         if all(_is_number(row[name]) for name in (measure, f"{measure}_low")) and row[measure]
     ]
-    return [each for each in found if each.half_width > float(tolerance) * (1 + ROUNDING)]
+    return [profit for profit in known if profit.half_width > float(tolerance) * (1 + ROUNDING)]
 
 
 def _is_number(cell: object) -> bool:

@@ -10,6 +10,8 @@ Noise bends curves too. d(i) is taken seed by seed (the points of a curve share 
 residents are nested, so much of the noise cancels), and counts only as far as it is beyond the
 half-width of its own interval. Two points with the same values for every seed are one placement
 twice, and nothing lies in between.
+
+What is refined are lines of a sweep: comparisons that differ in one number only.
 """
 
 from __future__ import annotations
@@ -33,61 +35,12 @@ FEWEST = 3
 MOST_HALVINGS = 4
 """How often an interval between two values that were given is divided: 15 points at most."""
 
-Curve = Sequence[Sequence[float]]
-"""For each abscissa, rising, the values of the seeds, in the seeds' order."""
-
-
-def too_coarse(xs: Sequence[Fraction], curves: Sequence[Curve], tolerance: Fraction) -> list[int]:
-    """Numbers i of the intervals from xs[i] to xs[i + 1] where a curve needs another point."""
-    off = [0.0] * (len(xs) - 1)
-    for curve in curves:
-        if not all(map(math.isfinite, (value for values in curve for value in values))):
-            continue
-        means = [abs(fmean(values)) for values in curve]
-        for i in range(1, len(xs) - 1):
-            before, after = xs[i] - xs[i - 1], xs[i + 1] - xs[i]
-            bend = _bend(curve[i - 1], curve[i], curve[i + 1], float(before / (before + after)))
-            for at, step in ((i - 1, before), (i, after)):
-                if curve[at] == curve[at + 1]:
-                    continue
-                share = float(step * step / (4 * before * after))
-                level = min(means[at], means[at + 1])
-                off[at] = max(off[at], bend * share / level if level else 0.0)
-    return [i for i, each in enumerate(off) if each > tolerance]
-
-
-def _bend(
-    left: Sequence[float], here: Sequence[float], right: Sequence[float], weight: float
-) -> float:
-    """How far a point surely lies beside the line through its neighbours; 0 if it may lie on it."""
-    beside = [
-        value - ((1 - weight) * one + weight * other)
-        for one, value, other in zip(left, here, right, strict=False)  # seeds that all three have
-    ]
-    noise = half_width(beside, CORRECTED) if len(beside) > 1 else math.inf
-    return max(0.0, abs(fmean(beside)) - noise)
-
-
-def between(low: Fraction, high: Fraction, *, whole: bool) -> Fraction | None:
-    """A short number in the middle third; None if there is none.
-
-    A whole number if asked for, else the one nearest to the middle with the fewest decimals.
-    """
-    middle, third = (low + high) / 2, (high - low) / 6
-    for digits in range(1 if whole else 40):
-        scale = 10**digits
-        number = Fraction(round(middle * scale), scale)
-        if (low < number < high) if whole else abs(number - middle) <= third:
-            return number
-    return None
-
-
-# --- the lines of a sweep that can be refined: comparisons that differ in one number only ---
-
-
 FRACTION = "memory.fraction"
 UNREFINED = ("scene", "picture", "policy", "method")
 """Keys with other rays or other policies at each value: there is nothing in between."""
+
+Curve = Sequence[Sequence[float]]
+"""For each abscissa, rising, the values of the seeds, in the seeds' order."""
 
 
 def refined_keys(config: Config) -> list[str]:
@@ -141,3 +94,48 @@ def identity(comparison: Comparison, but: str | None = None) -> str:
             node = node[part]
         node.pop(last, None)
     return json.dumps([config, swept], sort_keys=True)
+
+
+def too_coarse(xs: Sequence[Fraction], curves: Sequence[Curve], tolerance: Fraction) -> list[int]:
+    """Numbers i of the intervals from xs[i] to xs[i + 1] where a curve needs another point."""
+    off = [0.0] * (len(xs) - 1)
+    for curve in curves:
+        if not all(map(math.isfinite, (value for values in curve for value in values))):
+            continue  # something over nothing: no number of points makes a line of it
+        means = [abs(fmean(values)) for values in curve]
+        for i in range(1, len(xs) - 1):
+            before, after = xs[i] - xs[i - 1], xs[i + 1] - xs[i]
+            bend = _bend(curve[i - 1], curve[i], curve[i + 1], float(before / (before + after)))
+            for left, step in ((i - 1, before), (i, after)):
+                if curve[left] == curve[left + 1]:
+                    continue
+                share = float(step * step / (4 * before * after))
+                level = min(means[left], means[left + 1])
+                off[left] = max(off[left], bend * share / level if level else 0.0)
+    return [i for i, error in enumerate(off) if error > tolerance]
+
+
+def _bend(
+    left: Sequence[float], here: Sequence[float], right: Sequence[float], weight: float
+) -> float:
+    """How far a point surely lies beside the line through its neighbours; 0 if it may lie on it."""
+    beside = [
+        value - ((1 - weight) * one + weight * other)
+        for one, value, other in zip(left, here, right, strict=False)  # seeds that all three have
+    ]
+    noise = half_width(beside, CORRECTED) if len(beside) > 1 else math.inf
+    return max(0.0, abs(fmean(beside)) - noise)
+
+
+def between(low: Fraction, high: Fraction, *, whole: bool) -> Fraction | None:
+    """A short number in the middle third; None if there is none.
+
+    A whole number if asked for, else the one nearest to the middle with the fewest decimals.
+    """
+    middle, third = (low + high) / 2, (high - low) / 6
+    for digits in range(1 if whole else 40):
+        scale = 10**digits
+        number = Fraction(round(middle * scale), scale)
+        if (low < number < high) if whole else abs(number - middle) <= third:
+            return number
+    return None

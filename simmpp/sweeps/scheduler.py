@@ -1,4 +1,4 @@
-"""Running tasks on an executor: a few in flight at a time, none lost when a worker dies."""
+"""Running tasks on a pool: a few in flight at a time, none lost when a worker dies."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 
 from simmpp.common.errors import ConfigError
-from simmpp.run.provenance import result_versions
-from simmpp.sweeps.executors import Crew
+from simmpp.sweeps.executors import Pool
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
-from simmpp.sweeps.worker import run_task
 
 WORKER_DIED = "the worker died (out of memory?)"
 
 
-def outcomes(waiting: deque[Task], crew: Crew, timeout_s: float | None) -> Iterator[Outcome]:
+def outcomes(waiting: deque[Task], pool: Pool) -> Iterator[Outcome]:
     """The outcome of each task, in the order in which they are finished.
 
     Tasks are taken from the left; whoever gets an outcome may add further ones on the right.
@@ -27,41 +25,32 @@ def outcomes(waiting: deque[Task], crew: Crew, timeout_s: float | None) -> Itera
     suspects = deque[Task]()
     flying: dict[Future[Outcome], Task] = {}
     while waiting or suspects or flying:
+        # One dead process breaks an executor of concurrent.futures for all its tasks, and does not
+        # say which it ran. A suspect that flies alone and is lost is the one.
         alone = bool(suspects)
-        queue, room = (suspects, 1) if alone else (waiting, crew.most_in_flight)
+        queue, room = (suspects, 1) if alone else (waiting, pool.most_in_flight)
         while queue and len(flying) < room:
             task = queue.popleft()
-            flying[_submit(crew, task, timeout_s)] = task
+            flying[pool.submit(task)] = task
         lost: list[Task] = []
         for future in wait(flying, return_when=FIRST_COMPLETED).done:
             task = flying.pop(future)
-            outcome = _result(future, task)
+            outcome = _outcome(future, task)
             if outcome is None:
                 lost.append(task)
             else:
                 yield outcome
         if lost:
-            lost += flying.values()
+            lost += flying.values()  # broken too, though their futures may not know yet
             flying.clear()
-            crew.renew()
+            pool.renew()
             if alone:
                 yield from (Outcome(task.key, error=WORKER_DIED) for task in lost)
             else:
                 suspects.extend(lost)
 
 
-def _submit(crew: Crew, task: Task, timeout_s: float | None) -> Future[Outcome]:
-    """Give a task out; to a broken executor it is lost like those already in flight."""
-    try:
-        versions = result_versions() if crew.is_elsewhere else None
-        return crew.executor.submit(run_task, task, timeout_s, versions)
-    except BrokenExecutor as error:
-        future: Future[Outcome] = Future()
-        future.set_exception(error)
-        return future
-
-
-def _result(future: Future[Outcome], task: Task) -> Outcome | None:
+def _outcome(future: Future[Outcome], task: Task) -> Outcome | None:
     """What came back; None if the executor broke."""
     try:
         return future.result()

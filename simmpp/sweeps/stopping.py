@@ -76,6 +76,7 @@ def seeds_wanted(
     widest = max((_relative_half_width(values) for values in profits), default=0.0)
     if widest <= tolerance:
         return seeds
+    # at most GROWTH times as many, for a deviation of eight seeds is itself known to a quarter only
     needed = math.ceil(min(GROWTH, (widest / float(tolerance)) ** 2) * seeds)
     return min(max(needed, seeds + 1), max(most, seeds))
 
@@ -94,6 +95,6 @@ def corrected_interval(
     if not math.isfinite(mean) or len(values) < 2:
         return None
     half = half_width(values, CORRECTED)
-    if half == 0 and is_drawn:
+    if half == 0 and is_drawn:  # equal by luck: an interval of no width would be a lie
         half = float(tolerance) * mean
     return mean - half, mean + half

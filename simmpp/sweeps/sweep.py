@@ -2,40 +2,39 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from simmpp.common.files import Row, as_arrow, write_csv, write_parquet, write_text
+from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
 from simmpp.methods.columns import result_columns
 from simmpp.run.inputs import cache_workload
-from simmpp.run.provenance import all_versions
-from simmpp.sweeps.adaptive import Frontier
-from simmpp.sweeps.executors import Crew, crew_for
+from simmpp.run.provenance import result_versions
+from simmpp.run.record import write_record
+from simmpp.run.rows import PARQUET, PROFITS, RECORD, RESULTS, TIMINGS
+from simmpp.sweeps.adaptive import AdaptiveSampler
+from simmpp.sweeps.executors import Pool, pool_for
 from simmpp.sweeps.journal import Journal, Outcome, Results
-from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.plan import Plan, plan_of
 from simmpp.sweeps.profits import profit_columns, profit_rows
-from simmpp.sweeps.scheduler import outcomes as execute
+from simmpp.sweeps.scheduler import outcomes
 from simmpp.sweeps.task import Task
-from simmpp.sweeps.worker import keep_workload
+from simmpp.sweeps.worker import keep_workload, run_task
 
 if TYPE_CHECKING:
     import pandas
 
-RESULTS, PARQUET, PROFITS, TIMINGS, RECORD = (
-    "results.csv",
-    "results.parquet",
-    "profits.csv",
-    "timings.csv",
-    "run.json",
-)
+SHOWN_S, SHARE = 5.0, 20
+"""Seconds between two writings of the tables of a sweep that runs at least, and how many times as
+long as one writing takes."""
+Tables = dict[str, tuple[list[Row], Sequence[str]]]
+"""Rows and columns by the name of their file."""
 
 
 class Watcher:
@@ -71,6 +70,7 @@ def run_sweep(
     *,
     workers: int = 1,
     cluster: str | None = None,
+    pool: Pool | None = None,
     engine: str | None = None,
     timeout_s: float | None = None,
     out: str | Path | None = None,
@@ -78,10 +78,10 @@ def run_sweep(
 ) -> SweepResult:
     """Simulate all points of a configuration, given as data or as the name of a YAML file.
 
-    Points run in this process, in ``workers`` processes, or on the Dask ``cluster`` of that
-    address; rows are the same. With ``out``, a folder, finished points are kept there, a second
-    call continues, and the tables are written as files. One point may take ``timeout_s`` seconds;
-    one that fails has its row with an ``error``.
+    Points run in this process, in ``workers`` processes, on the Dask ``cluster`` of that address,
+    or on a ``pool`` of one's own, which is closed; rows are the same. With ``out``, a folder,
+    finished points are kept there, a second call continues, and the tables are written as files.
+    One point may take ``timeout_s`` seconds; one that fails has its row with an ``error``.
     Raises InputError if the configuration is wrong or the folder holds another sweep's results.
     """
     if isinstance(config, str | Path):
@@ -90,15 +90,13 @@ def run_sweep(
         config = config_from_mapping(config)
     if engine is not None:
         config = with_key(config, "engine", engine)
-    made = plan(config)
-    folder = None if out is None else Path(out)
-    with closing(_results(made, folder)) as results, closing(crew_for(workers, cluster)) as crew:
-        made = _simulate(made, results, crew, timeout_s, folder, watcher or Watcher())
-    rows, tolerance = made.rows(results.outcomes), config.settings.tolerance
-    return SweepResult(
-        _frame(rows, result_columns(made.further)),
-        _frame(profit_rows(rows, made.profit_keys, tolerance), profit_columns(made.profit_keys)),
-    )
+    plan, folder = plan_of(config), None if out is None else Path(out)
+    with (
+        closing(_results(plan, folder)) as results,
+        closing(pool or _pool(workers, cluster, timeout_s)) as own,
+    ):
+        tables = _run(plan, results, own, folder, watcher or Watcher())
+    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]))
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:
@@ -108,51 +106,57 @@ def _results(plan: Plan, folder: Path | None) -> Results:
     return Journal(folder, plan.identity)
 
 
-def _simulate(
-    plan: Plan,
-    results: Results,
-    crew: Crew,
-    timeout_s: float | None,
-    folder: Path | None,
-    watcher: Watcher,
-) -> Plan:
-    """Run what isn't finished; the tables are written even when interrupted.
+def _pool(workers: int, cluster: str | None, timeout_s: float | None) -> Pool:
+    """Workers elsewhere may have other versions installed than this process: they are told."""
+    versions = None if cluster is None else result_versions()
+    return pool_for(workers, cluster, partial(run_task, timeout_s=timeout_s, versions=versions))
 
-    Returns the plan with all that turned out to be needed.
-    """
-    frontier = Frontier(plan, results)
+
+def _run(plan: Plan, results: Results, pool: Pool, folder: Path | None, watcher: Watcher) -> Tables:
+    """Run what isn't finished; the tables are written even when interrupted."""
+    sampler = AdaptiveSampler(plan, results)
     if folder is None:
-        run_pending(frontier, results, crew, timeout_s, watcher)
-        return frontier.plan
+        run_pending(sampler, results, pool, watcher)
+        return tables_of(sampler.plan, results)
 
-    def write() -> None:
-        write_tables(frontier.plan, results, folder)
+    def write() -> Tables:
+        return write_tables(sampler.plan, results, folder)
 
     showing = Showing(write)
     try:
-        run_pending(frontier, results, crew, timeout_s, watcher, showing)
+        run_pending(sampler, results, pool, watcher, showing)
     finally:
-        write()
-    return frontier.plan
+        tables = write()
+    return tables
+
+
+def run_plans(
+    plans: Iterable[Plan], results: Results, workers: int = 1, watcher: Watcher | None = None
+) -> None:
+    """Run what isn't finished of several plans, what they have in common once."""
+    plans = list(plans)
+    together = Plan(plans[0].config, tuple(chain(*(plan.points for plan in plans))), ())
+    sampler = AdaptiveSampler(together, results)
+    with closing(pool_for(max(1, min(workers, len(sampler.pending))), None, run_task)) as pool:
+        run_pending(sampler, results, pool, watcher or Watcher())
 
 
 def run_pending(
-    frontier: Frontier,
+    sampler: AdaptiveSampler,
     results: Results,
-    crew: Crew,
-    timeout_s: float | None,
+    pool: Pool,
     watcher: Watcher,
     after_each: Callable[[], None] = lambda: None,
 ) -> None:
     """Run what isn't finished, and what that shows to be needed; ``results`` grow one by one."""
     for text in results.notices:
         watcher.notice(text)
-    pending = deque(frontier.pending)
-    watcher.planned(frontier.plan, results.outcomes)
-    _trace(frontier.plan, pending, results, watcher)
-    for outcome in execute(pending, crew, timeout_s):
+    pending = deque(sampler.pending)
+    watcher.planned(sampler.plan, results.outcomes)
+    _trace(sampler.plan, pending, results, watcher)
+    for outcome in outcomes(pending, pool):
         results.add(outcome)
-        if more := frontier.take(outcome):
+        if more := sampler.tell(outcome):
             pending.extend(more)  # while these wait, others run
             watcher.asked(len(more))
         watcher.simulated(outcome)
@@ -161,68 +165,39 @@ def run_pending(
 
 def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher) -> None:
     """Bring the workloads that are needed into the cache, from where workers share them."""
-    scenes = {each.task.digest: each.scene for each in plan.points}
+    scenes = {planned.task.digest: planned.scene for planned in plan.points}
     first_tasks: dict[str, Task] = {}
     for task in tasks:
         first_tasks.setdefault(task.digest, task)
     for digest, task in first_tasks.items():
         began_s = time.perf_counter()
-        tell = partial(watcher.tracing, scenes[digest])
-        workload = cache_workload(task.config, digest, progress=tell, notice=watcher.notice)
+        progress = partial(watcher.tracing, scenes[digest])
+        workload = cache_workload(task.config, digest, progress=progress, notice=watcher.notice)
         if workload is not None:
             keep_workload(workload)
             results.add_trace(digest, time.perf_counter() - began_s)
 
 
-def write_tables(plan: Plan, results: Results, folder: Path) -> None:
-    """Write the tables of the points that are finished, and what they are of."""
-    rows, columns, keys = (
-        plan.rows(results.outcomes),
-        result_columns(plan.further),
-        plan.profit_keys,
-    )
-    write_csv(rows, columns, folder / RESULTS)
-    write_parquet(rows, columns, folder / PARQUET)
+def tables_of(plan: Plan, results: Results) -> Tables:
+    """The tables of the points that are finished; what reads them computes no profits again."""
+    rows, keys = plan.rows(results.outcomes), plan.profit_keys
     profits = profit_rows(rows, keys, plan.config.settings.tolerance)
-    write_csv(profits, profit_columns(keys), folder / PROFITS)
     timings = plan.timings(results.outcomes, results.trace_s)
-    write_csv(timings, plan.timing_columns, folder / TIMINGS)
-    write_text(json.dumps(_record(plan), indent=1) + "\n", folder / RECORD)
-
-
-def _record(plan: Plan) -> dict[str, object]:
-    """``run.json``: nothing in it depends on when, where or how fast the sweep ran."""
-    machines: dict[str, dict[str, object]] = {}
-    for each in plan.points:
-        config = each.point.config
-        constants = asdict(config.machine_for(config.processors))
-        machines.setdefault(json.dumps(constants), constants)
     return {
-        **plan.identity,
-        "versions": all_versions(),
-        "points": len(plan.points),
-        "simulations": len(plan.tasks),
-        "further_columns": list(plan.further),
-        "machines": list(machines.values()),
+        RESULTS: (rows, result_columns(plan.further)),
+        PROFITS: (profits, profit_columns(keys)),
+        TIMINGS: (timings, plan.timing_columns),
     }
 
 
-def _frame(rows: list[Row], columns: Sequence[str]) -> pandas.DataFrame:
-    """A table for Python; integers stay integers where some are missing."""
-    import pandas
-    import pyarrow
-
-    table = as_arrow(rows, columns)
-    gaps = any(table[name].null_count for name in columns if table[name].type == pyarrow.int64())
-    nullable = {pyarrow.int64(): pandas.Int64Dtype()}
-    return table.to_pandas(types_mapper=nullable.get if gaps else None)
-
-
-# --- when to write the tables of a sweep that is still running ---
-
-
-SHOWN_S, SHARE = 5.0, 20
-"""Seconds between two writings at least, and how many times as long as one writing takes."""
+def write_tables(plan: Plan, results: Results, folder: Path) -> Tables:
+    """Write them, and what they are of."""
+    tables = tables_of(plan, results)
+    for name, (rows, columns) in tables.items():
+        write_csv(rows, columns, folder / name)
+    write_parquet(*tables[RESULTS], folder / PARQUET)
+    write_record(plan.record, folder / RECORD)
+    return tables
 
 
 class Showing:
@@ -231,7 +206,7 @@ class Showing:
     At once, then every SHOWN_S seconds, or less often if writing takes more than a twentieth.
     """
 
-    def __init__(self, write: Callable[[], None]) -> None:
+    def __init__(self, write: Callable[[], object]) -> None:
         self._write = write
         write()  # takes its time to import, which is not counted
         self._next_s = time.monotonic() + SHOWN_S
@@ -243,3 +218,14 @@ class Showing:
             self._write()
             ended_s = time.monotonic()
             self._next_s = ended_s + max(SHOWN_S, SHARE * (ended_s - began_s))
+
+
+def _frame(rows: list[Row], columns: Sequence[str]) -> pandas.DataFrame:
+    """A table for Python; integers stay integers where some are missing."""
+    import pandas
+    import pyarrow
+
+    table = as_arrow(rows, columns)
+    gaps = any(table[name].null_count for name in columns if table[name].type == pyarrow.int64())
+    nullable = {pyarrow.int64(): pandas.Int64Dtype()}
+    return table.to_pandas(types_mapper=nullable.get if gaps else None)

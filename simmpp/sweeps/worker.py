@@ -1,4 +1,9 @@
-"""What a worker does: one task after the other, keeping what consecutive ones share."""
+"""What a worker does: one task after the other, keeping what consecutive ones share.
+
+``run_task`` is called in whatever process or thread does the work. Workloads and placements are
+kept from one call to the next. The seconds of an outcome are those that its task would have taken
+alone, so those of a placement that several tasks share count for each of them.
+"""
 
 from __future__ import annotations
 
@@ -27,10 +32,78 @@ from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
 from simmpp.workload.workload import SPHERE, Workload
 
-# --- how long one task takes, on the clock and on the processor ---
+Kind = TypeVar("Kind")
 
 
-Made = TypeVar("Made")
+def run_task(
+    task: Task, timeout_s: float | None = None, versions: Mapping[str, str] | None = None
+) -> Outcome:
+    """Simulate; whatever goes wrong becomes the outcome's error, so that the sweep goes on.
+
+    ``versions`` are those of who asks, if they may differ: results must not be mixed then.
+    """
+    try:
+        if versions is not None:
+            _refuse_other(versions)
+        return _outcome(task, timeout_s)
+    except SimmppError as error:
+        problem = str(error)
+    except MemoryError:
+        problem = "out of memory"
+    except Exception as error:
+        problem = f"{type(error).__name__}: {error}"
+    return Outcome(task.key, error=" ".join(problem.split()))
+
+
+def keep_workload(workload: Workload) -> None:
+    """Let tasks in this process use what it has just traced."""
+    _workloads.get(workload.digest, lambda: workload)
+
+
+def _refuse_other(versions: Mapping[str, str]) -> None:
+    if problem := difference(versions, result_versions(), "for the sweep", "for the worker"):
+        raise SimmppError(f"the worker has other versions: {problem}")
+
+
+def _outcome(task: Task, timeout_s: float | None) -> Outcome:
+    config, settings = task.config, task.config.settings
+    method = METHODS[settings.method]
+    if method.is_placed:
+        warm_up(settings.engine)
+    workload = _workloads.get(task.digest, lambda: shared_workload(config, task.digest))
+    machine, watch = config.machine_for(config.processors), Stopwatch(timeout_s)
+    watch.look(workload.n_rays)
+    case = Case(
+        workload,
+        machine,
+        task.policy,
+        config.memory.fraction,
+        settings.engine,
+        settings.ready_order,
+        place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
+        tick=watch.look,
+    )
+    numbers = method.numbers(case)
+    spent = watch.seconds
+    return Outcome(task.key, numbers, _effective_fraction(case, method), spent.wall, spent.cpu)
+
+
+def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
+    """The placement and the seconds that drawing it took."""
+    began, config = now(), task.config
+    placement = place(
+        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
+    )
+    return placement, now() - began
+
+
+def _effective_fraction(case: Case, method: Method) -> float:
+    """The share of the objects that is really resident; the model's own where nothing is placed."""
+    if POLICIES[case.policy.name].all_resident:
+        return 1.0
+    if method.is_placed:
+        return case.place().effective_fraction
+    return max(float(case.fraction), 1 / case.machine.processors)
 
 
 class TimedOut(SimmppError):
@@ -63,11 +136,11 @@ class Stopwatch:
     def __init__(self, timeout_s: float | None) -> None:
         self._timeout_s, self._began, self._shared = timeout_s, now(), Seconds(0.0, 0.0)
 
-    def count(self, shared: tuple[Made, Seconds]) -> Made:
+    def count(self, shared: tuple[Kind, Seconds]) -> Kind:
         """Take something with the seconds that it took: the rest begins here."""
-        made, self._shared = shared
+        thing, self._shared = shared
         self._began = now()
-        return made
+        return thing
 
     @property
     def seconds(self) -> Seconds:
@@ -80,99 +153,28 @@ class Stopwatch:
             raise TimedOut(f"timeout: not finished after {self._timeout_s:g} s")
 
 
-class Kept(Generic[Made]):
-    """The last things made, by key; threads wait for one that is being made."""
+class Kept(Generic[Kind]):
+    """The last few things of a kind, by key; threads wait for one that is being made."""
 
     def __init__(self, most: int) -> None:
-        self._most, self._made, self._lock = most, OrderedDict[str, Made](), Lock()
+        self._most, self._things, self._lock = most, OrderedDict[str, Kind](), Lock()
 
-    def get(self, key: str, make: Callable[[], Made]) -> Made:
+    def get(self, key: str, make: Callable[[], Kind]) -> Kind:
         """What ``make`` has made for the key, now or before."""
-        with self._lock:
-            made = self._made.pop(key) if key in self._made else make()
-            self._made[key] = made
-            if len(self._made) > self._most:
-                self._made.popitem(last=False)
-        return made
+        with self._lock:  # while it is made, too: another thread would make the same
+            thing = self._things.pop(key) if key in self._things else make()
+            self._things[key] = thing
+            if len(self._things) > self._most:
+                self._things.popitem(last=False)
+        return thing
 
 
 _workloads: Kept[Workload] = Kept(2)
 _placements: Kept[tuple[Placement, Seconds]] = Kept(4)
 
-
-def keep_workload(workload: Workload) -> None:
-    """Let tasks in this process use what it has just traced."""
-    _workloads.get(workload.digest, lambda: workload)
-
-
-def run_task(task: Task, timeout_s: float | None, versions: Mapping[str, str] | None) -> Outcome:
-    """Simulate; whatever goes wrong becomes the outcome's error, so that the sweep goes on.
-
-    ``versions`` are those of who asks, if they may differ: results must not be mixed then.
-    """
-    try:
-        if versions is not None:
-            _compare(versions)
-        return _simulated(task, timeout_s)
-    except SimmppError as error:
-        problem = str(error)
-    except MemoryError:
-        problem = "out of memory"
-    except Exception as error:
-        problem = f"{type(error).__name__}: {error}"
-    return Outcome(task.key, error=" ".join(problem.split()))
-
-
-def _compare(versions: Mapping[str, str]) -> None:
-    if problem := difference(versions, result_versions(), "for the sweep", "for the worker"):
-        raise SimmppError(f"the worker has other versions: {problem}")
-
-
-def _simulated(task: Task, timeout_s: float | None) -> Outcome:
-    config, settings = task.config, task.config.settings
-    method = METHODS[settings.method]
-    if method.is_placed:
-        warm_up(settings.engine)
-    workload = _workloads.get(task.digest, lambda: shared_workload(config, task.digest))
-    machine, watch = config.machine_for(config.processors), Stopwatch(timeout_s)
-    watch.look(workload.n_rays)
-    case = Case(
-        workload,
-        machine,
-        task.policy,
-        config.memory.fraction,
-        settings.engine,
-        settings.ready_order,
-        place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
-        tick=watch.look,
-    )
-    numbers = method.numbers(case)
-    took = watch.seconds
-    return Outcome(task.key, numbers, _effective_fraction(case, method), took.wall, took.cpu)
-
-
-def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
-    """The placement and the seconds that drawing it took."""
-    began, config = now(), task.config
-    placement = place(
-        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
-    )
-    return placement, now() - began
-
-
-def _effective_fraction(case: Case, method: Method) -> float:
-    """The share of the objects that is really resident; the model's own where nothing is placed."""
-    if POLICIES[case.policy.name].all_resident:
-        return 1.0
-    if method.is_placed:
-        return case.place().effective_fraction
-    return max(float(case.fraction), 1 / case.machine.processors)
-
-
-# --- the first run of a process loads or makes compiled code; here it is one that isn't timed ---
-
-
 PROCESSORS = N_OBJECTS = 2
+"""Of the simulation that is only there to have compiled code loaded, or made, before any is timed.
+"""
 
 
 @cache

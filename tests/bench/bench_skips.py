@@ -26,7 +26,7 @@ from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import WANT
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state
-from simmpp.sweeps.plan import plan
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.worker import run_task
 from simmpp.workload.cache.store import workload_for
@@ -139,11 +139,11 @@ def no_state(spec: str) -> Iterator[Row]:
 def sweeps(spec: str) -> Iterator[Row]:
     """Equal points run once; finished points are not run again."""
     config = config_from_mapping({**SWEEP, "scene": spec})
-    made = plan(config)
+    made = plan_of(config)
     run_task(made.tasks[0], None, None)  # reads the workload
     once = best_s(lambda: [run_task(task, None, None) for task in made.tasks], 2)
     with patch("simmpp.sweeps.task._holds_everything", lambda config: False):
-        apart = plan(config)
+        apart = plan_of(config)
     tasks = [each.task for each in apart.points]
     each_time = best_s(lambda: [run_task(task, None, None) for task in tasks], 2)
     what = f"equal points once: {len(made.tasks)} of {len(tasks)} runs"

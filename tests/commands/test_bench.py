@@ -11,7 +11,10 @@ from simmpp.common.errors import ModelError
 from simmpp.config.config import load_config
 from simmpp.methods import table as methods
 from simmpp.studies.bench.bench import bench
-from simmpp.sweeps import worker
+from simmpp.sweeps import sweep as sweeping
+from simmpp.sweeps.journal import Outcome
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
 
 CONFIG = """
 scene: tetra:2
@@ -63,15 +66,15 @@ MODELS = (("analytical", "1"), ("analytical-measured", "1"))
 
 
 def test_it_continues_and_then_says_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    real, ran = worker._simulated, []
+    ran: list[str] = []
 
-    def stops(task, timeout_s):  # type: ignore[no-untyped-def]
+    def stops(task: Task) -> Outcome:
         ran.append(task.key)
         if len(ran) == 20:
             raise KeyboardInterrupt
-        return real(task, timeout_s)
+        return run_task(task)
 
-    monkeypatch.setattr(worker, "_simulated", stops)
+    monkeypatch.setattr(sweeping, "run_task", stops)
     assert simmpp("--seeds", "8").exit_code == 130
     assert simmpp("--seeds", "8").exit_code == 0
     whole, text = len(ran), Path("o/bench.csv").read_bytes()
@@ -123,8 +126,8 @@ def test_what_it_sets_itself_is_refused(setting: str, problem: str) -> None:
 
 def test_more_seeds_add_to_what_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     ran: list[str] = []
-    real = worker._simulated
-    monkeypatch.setattr(worker, "_simulated", lambda task, t: ran.append(task.key) or real(task, t))
+    counting = lambda task: ran.append(task.key) or run_task(task)  # type: ignore[func-returns-value]  # noqa: E731
+    monkeypatch.setattr(sweeping, "run_task", counting)
     assert simmpp("--seeds", "4").exit_code == 0
     few = len(ran)
     assert simmpp("--seeds", "5").exit_code == 0

@@ -212,7 +212,7 @@ def merged() -> None:
         (gone("results.csv"), "there is no results.csv"),
         (gone("profits.csv"), "there is no profits.csv"),
         (written("run.json", "{"), "it is no baseline (Expecting"),
-        (written("run.json", "[]"), "it is no baseline (run.json has no configuration)"),
+        (written("run.json", "[]"), "it is no baseline (run.json: expected a JSON object)"),
         (written("run.json", '{"config": {}}'), "it is of other settings"),
         (written("run.json", '{"config": {"memory": 3}, "sha256": 4}'), "it is no baseline"),
         (written("results.csv", "a,b\n"), "it is no baseline (results.csv is not the file that"),

@@ -59,7 +59,7 @@ def test_run_writes_rows_and_record() -> None:
     assert {row["effective_fraction"] for row in rows if row["policy"] == "replicated"} == {"1.0"}
     record = json.loads(Path("a/b/run.json").read_text())
     assert record["config"]["processors"] == 4
-    assert record["machine"]["send_startup_ps"] == 10_000_000
+    assert record["machines"][0]["send_startup_ps"] == 10_000_000
     for policy in record["policies"]:
         accounts = zip(*policy["pes"].values(), strict=True)
         assert {sum(account) for account in accounts} == {policy["makespan_ps"]}

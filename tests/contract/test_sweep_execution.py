@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.config.config import config_from_mapping
-from simmpp.sweeps.executors import Crew
+from simmpp.sweeps.executors import Pool
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.scheduler import WORKER_DIED, outcomes
 from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
 
 
 class Fragile(Executor):
@@ -38,7 +39,7 @@ class Fragile(Executor):
         return future
 
 
-class Renewing(Crew):
+class Renewing(Pool):
     def renew(self) -> None:
         assert isinstance(self.executor, Fragile)
         self.executor = Fragile(self.executor.deadly)
@@ -48,7 +49,7 @@ class Renewing(Crew):
 def test_only_the_task_that_kills_its_worker_fails(numbers: set[int], in_flight: int) -> None:
     tasks = [dataclasses.replace(SOME_TASK, key=str(n)) for n in range(12)]
     deadly = {str(n) for n in numbers}
-    found = list(outcomes(deque(tasks), Renewing(Fragile(deadly), in_flight), None))
+    found = list(outcomes(deque(tasks), Renewing(Fragile(deadly), in_flight, run_task)))
     assert sorted(o.key for o in found) == sorted(task.key for task in tasks)
     assert {o.key: o.error for o in found if o.error} == dict.fromkeys(deadly, WORKER_DIED)
 

@@ -15,7 +15,7 @@ from simmpp.model.synchronous import synchronous
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.run.inputs import workload_of
-from simmpp.sweeps.plan import plan
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.sweep import run_sweep
 
 CONFIG = {
@@ -108,7 +108,7 @@ def test_a_model_has_its_tolerance_too() -> None:
     alone = {**CONFIG, "tolerance": "10%", "method": "analytical", "sweep": {}}
     profits = run_sweep(alone).profits
     assert "method" not in profits.columns
-    assert len(plan(config_from_mapping(alone)).tasks) == 2
+    assert len(plan_of(config_from_mapping(alone)).tasks) == 2
     assert (profits["time_profit_low"] == profits["time_profit_high"]).all()
 
 

@@ -16,10 +16,13 @@ from simmpp.common.compiled import cache_folder
 from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import simulate
 from simmpp.methods import simulation as simulating
-from simmpp.sweeps import sweep, worker
-from simmpp.sweeps.executors import Crew
+from simmpp.sweeps import scheduler, sweep
+from simmpp.sweeps.executors import Pool, SerialExecutor
+from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.stopping import FEWEST
 from simmpp.sweeps.sweep import run_sweep
+from simmpp.sweeps.task import Task
+from simmpp.sweeps.worker import run_task
 
 TOLERANCE, MOST = Fraction(6, 100), 24
 CONFIG = {
@@ -116,10 +119,8 @@ def test_nothing_drawn_is_simulated_once_and_known_exactly(whole: Path) -> None:
     still = {**CONFIG, "memory": {"residents": "nearest"}, "sweep": {"processors": [8]}}
     del still["refine"]
     ran: list[str] = []
-    with pytest.MonkeyPatch.context() as patch:
-        real = worker._simulated
-        patch.setattr(worker, "_simulated", lambda task, t: ran.append(task.key) or real(task, t))
-        rows, profits = run_sweep(still)
+    counting = Pool(SerialExecutor(), 1, lambda task: ran.append(task.key) or run_task(task))  # type: ignore[func-returns-value]
+    rows, profits = run_sweep(still, pool=counting)
     assert (len(rows), len(ran)) == (3 * FEWEST, 3)
     assert (profits["time_profit_low"] == profits["time_profit_high"]).all()
 
@@ -139,46 +140,40 @@ def test_both_engines_write_the_same(expected: dict[str, bytes], tmp_path: Path)
     assert tables(tmp_path, engine="simpy")["profits.csv"] == expected["profits.csv"]
 
 
-class Shuffled(Crew):
+class Shuffled(Pool):
     """Ends tasks in any order, several in flight."""
 
     def __init__(self, seed: int) -> None:
-        super().__init__(self, 7)  # type: ignore[arg-type]
+        super().__init__(SerialExecutor(), 7, run_task)
         self.random, self.flying = random.Random(seed), []  # type: ignore[var-annotated]
 
-    def submit(self, fn, *arguments):  # type: ignore[no-untyped-def]
-        future: Future[object] = Future()
-        self.flying.append((future, fn, arguments))
+    def submit(self, task: Task) -> Future[Outcome]:
+        future: Future[Outcome] = Future()
+        self.flying.append((future, task))
         self.random.shuffle(self.flying)
         if len(self.flying) > self.random.randrange(7):
             self.end_one()
         return future
 
     def end_one(self) -> None:
-        future, fn, arguments = self.flying.pop()
-        future.set_result(fn(*arguments))
-
-    def close(self) -> None:
-        pass
+        future, task = self.flying.pop()
+        future.set_result(self.run(task))
 
 
 @pytest.mark.parametrize("seed", range(2))
 def test_the_order_of_outcomes_is_irrelevant(
     expected: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
-    from simmpp.sweeps import scheduler as execute
-
-    crew = Shuffled(seed)
-    real = execute.wait
+    pool = Shuffled(seed)
+    real = scheduler.wait
 
     def wait(flying, **options):  # type: ignore[no-untyped-def]
         while not any(future.done() for future in flying):
-            crew.end_one()
+            pool.end_one()
         return real(flying, **options)
 
-    monkeypatch.setattr(execute, "wait", wait)
-    monkeypatch.setattr(sweep, "crew_for", lambda *arguments: crew)
-    assert tables(tmp_path) == expected
+    monkeypatch.setattr(scheduler, "wait", wait)
+    assert tables(tmp_path, pool=pool) == expected
 
 
 def test_it_continues_from_any_part_of_its_journal(

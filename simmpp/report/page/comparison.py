@@ -9,7 +9,13 @@ from typing import Any
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
 from simmpp.report.page.arrangement import axes_of
-from simmpp.report.page.difference import BEYOND, Difference, line, ranked, summary
+from simmpp.report.page.difference import (
+    BEYOND,
+    Difference,
+    changes_by_measure,
+    line,
+    ranked,
+)
 from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.profit_figures import ProfitData, profit_figures
@@ -20,22 +26,22 @@ MOST_CHANGES = 300
 """Lines of the page's table."""
 
 
-def write_comparison(before: Folder, after: Folder, found: Difference, path: Path) -> None:
+def write_comparison(before: Folder, after: Folder, sweeps: Difference, path: Path) -> None:
     """Write the page."""
-    changes = ranked(found.changes)
-    figures = _figures(found)
+    changes = ranked(sweeps.changes)
+    figures = _figures(sweeps)
     values = {
         "title": f"{_name(before)} and {_name(after)}",
         "facts": [f"before: {before.path}", f"after: {after.path}"],
         "live": "",
         "sections": [("summary", "Summary"), ("curves", "Curves"), ("changes", "What moved")],
-        "sentences": [verdict(found), *reasons(before, after)],
-        "summary": summary(found),
+        "sentences": [verdict(sweeps), *reasons(before, after)],
+        "summary": changes_by_measure(sweeps),
         "figures": figures,
         "changes": [line(change) for change in changes[:MOST_CHANGES]],
         "beyond": BEYOND,
         "hidden": max(0, len(changes) - MOST_CHANGES),
-        "only": [("only before", found.only_before), ("only after", found.only_after)],
+        "only": [("only before", sweeps.only_before), ("only after", sweeps.only_after)],
         "made": "Made by simmpp from the rows of two folders; nothing is loaded from anywhere.",
         "data": {"figures": {figure.stem: figure_data(figure) for figure in figures}},
     }
@@ -46,12 +52,12 @@ def _name(folder: Folder) -> str:
     return folder.path.resolve().name
 
 
-def verdict(found: Difference) -> str:
+def verdict(sweeps: Difference) -> str:
     """What there is to see, in one sentence."""
-    moved = {change.number for change in found.changes}
-    sure = {change.number for change in found.changes if change.certainty == BEYOND}
-    text = f"{counted(found.common, 'point')} in both"
-    for name, points in (("before", found.only_before), ("after", found.only_after)):
+    moved = {change.number for change in sweeps.changes}
+    sure = {change.number for change in sweeps.changes if change.certainty == BEYOND}
+    text = f"{counted(sweeps.common, 'point')} in both"
+    for name, points in (("before", sweeps.only_before), ("after", sweeps.only_after)):
         text += f", {len(points)} only {name}" if points else ""
     if not moved:
         return f"{text}; nothing moved."
@@ -60,23 +66,24 @@ def verdict(found: Difference) -> str:
 
 def reasons(before: Folder, after: Folder) -> list[str]:
     """Settings and machines that are not the same: why values may have moved."""
-    found = []
+    problems = []
     for key in ("config", "versions"):
         old, new = ({key: folder.record.get(key, {})} for folder in (before, after))
         if problem := difference(old, new, "before", "after"):
-            found.append(problem)
-    return found
+            problems.append(problem)
+    return problems
 
 
-def _figures(found: Difference) -> list[Figure]:
+def _figures(sweeps: Difference) -> list[Figure]:
     marked = {
         measure.replace(" ", "_"): frozenset(
-            c.number for c in found.changes if c.measure == measure and c.certainty == BEYOND
+            c.number for c in sweeps.changes if c.measure == measure and c.certainty == BEYOND
         )
         for measure in ("time profit", "message profit")
     }
-    rows = [*found.after.profits, *found.before.profits]
+    rows = [*sweeps.after.profits, *sweeps.before.profits]
     if not rows:
         return []
-    axes: Mapping[str, Any] = axes_of(rows, found.after.further)
-    return list(profit_figures(ProfitData(found.after.profits, axes, found.before.profits, marked)))
+    axes: Mapping[str, Any] = axes_of(rows, sweeps.after.further)
+    figures = profit_figures(ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked))
+    return list(figures)

@@ -13,6 +13,7 @@ from statistics import fmean
 from simmpp.report.page.points import Points
 from simmpp.run.point import CEILING
 from simmpp.run.profit import ratio
+from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
 
 SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
@@ -37,17 +38,17 @@ class Contest:
     """T(best) / T(replicated), likewise; None where the replicated scene was not run."""
 
 
-def contests(points: Points) -> list[Contest]:
+def contests_of(points: Points) -> list[Contest]:
     """One for each place where a dataflow has a result."""
     replicated = replicated_policies(points)
-    found = []
+    contests = []
     for place in points.places:
         ran = [n for n in place if points.runs[n]]
         flows = [n for n in ran if points.profits[n]["policy"] not in replicated]
         ceilings = [n for n in ran if points.profits[n]["policy"] in replicated]
         if flows:
-            found.append(_contest(points, flows, ceilings))
-    return found
+            contests.append(_contest(points, flows, ceilings))
+    return contests
 
 
 def replicated_policies(points: Points) -> set[str]:
@@ -80,7 +81,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
 
 def _means(points: Points, flows: list[int]) -> dict[int, float]:
     """Mean makespans (ps) over the seeds that all have, or each its own where there are none."""
-    seeds = [{row["seed"] for row in points.runs[n]} for n in flows]
+    seeds = [set(points.seeds[n]) for n in flows]
     common = set.intersection(*seeds) or set.union(*seeds)
     return {
         n: fmean(row["makespan_ps"] for row in points.runs[n] if row["seed"] in common)
@@ -90,14 +91,12 @@ def _means(points: Points, flows: list[int]) -> dict[int, float]:
 
 def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
     """T(above) / T(below) for each seed that both have."""
-    upper, lower = (
-        {row["seed"]: row["makespan_ps"] for row in points.runs[n]} for n in (above, below)
-    )
-    return [ratio(upper[seed], lower[seed]) for seed in sorted(upper.keys() & lower.keys())]
+    both = pairs(points.seeds[above], points.seeds[below])
+    return [ratio(upper["makespan_ps"], lower["makespan_ps"]) for upper, lower in both]
 
 
 def _certainty(ratios: list[float], low: float) -> str:
-    if ratios and all(each == 1 for each in ratios):
+    if ratios and all(value == 1 for value in ratios):
         return EQUAL
     if math.isnan(low):
         return UNKNOWN

@@ -14,17 +14,17 @@ from statistics import fmean
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps
+from simmpp.methods.columns import PLACE
 from simmpp.report.page import words
-from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.run.point import REFERENCE
 from simmpp.run.profit import ratio
-from simmpp.studies.check.moves import percent
 from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.matching import extremes, matched, percent
 
 BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "too few seeds"
-MEASURES = {
+COMPARED = {
     "makespan": ("makespan_ps", False),
     "messages": ("messages", False),
     "time profit": ("makespan_ps", True),
@@ -69,23 +69,24 @@ def difference_of(before: Folder, after: Folder) -> Difference:
     further = tuple(name for name in before.further if name in after.further)
     for one, other in ((before, after), (after, before)):
         _refuse_other_axes(one, other)
-    old, new = (points_of(folder.rows, further) for folder in (before, after))
-    names = (*AXES, *further, "policy")
-    of_old, of_new = ({_key(row, names): n for n, row in enumerate(p.profits)} for p in (old, new))
-    changes = [
-        change
-        for key, number in of_new.items()
-        if key in of_old
-        for change in _changes(old, of_old[key], new, number)
-    ]
-    return Difference(
-        old,
-        new,
-        len(of_old.keys() & of_new.keys()),
-        changes,
-        [_said(old, n) for key, n in of_old.items() if key not in of_new],
-        [_said(new, n) for key, n in of_new.items() if key not in of_old],
-    )
+    old, new = (points_of(folder.rows, further, folder.profits) for folder in (before, after))
+    changes: list[Change] = []
+    gone, added, common = [], [], 0
+    for _, number, number_now in matched(*(_numbers(points, further) for points in (old, new))):
+        if number is not None and number_now is not None:
+            common += 1
+            changes += _changes(old, number, new, number_now)
+        elif number is not None:
+            gone.append(_said(old, number))
+        elif number_now is not None:
+            added.append(_said(new, number_now))
+    return Difference(old, new, common, changes, gone, added)
+
+
+def _numbers(points: Points, further: Sequence[str]) -> dict[Key, int]:
+    """The number of each point by what names it."""
+    names = (*PLACE, *further, "policy")
+    return {tuple(row[name] for name in names): n for n, row in enumerate(points.profits)}
 
 
 def _refuse_other_axes(one: Folder, other: Folder) -> None:
@@ -97,30 +98,26 @@ def _refuse_other_axes(one: Folder, other: Folder) -> None:
             )
 
 
-def _key(row: Mapping[str, Hashable], names: Sequence[str]) -> Key:
-    return tuple(row[name] for name in names)
-
-
 def _said(points: Points, number: int) -> str:
     row = points.profits[number]
-    return words.point(row, (*(points.axes or AXES[:3]), "policy"))
+    return words.point(row, (*(points.axes or PLACE), "policy"))
 
 
 def _changes(old: Points, n_old: int, new: Points, n_new: int) -> list[Change]:
-    found = []
-    for measure in MEASURES:
+    changes = []
+    for measure in COMPARED:
         before, after = values(old, n_old, measure), values(new, n_new, measure)
         ratios, certainty = _compared(before, after)
         if certainty:
             means = fmean(before.values()), fmean(after.values())
             of = _said(new, n_new)
-            found.append(Change(n_new, of, measure, *means, fmean(ratios), certainty))
-    return found
+            changes.append(Change(n_new, of, measure, *means, fmean(ratios), certainty))
+    return changes
 
 
 def values(points: Points, number: int, measure: str) -> BySeed:
     """A measure of a point for each of its seeds."""
-    column, is_profit = MEASURES[measure]
+    column, is_profit = COMPARED[measure]
     own = {row["seed"]: row[column] for row in points.runs[number]}
     if not is_profit:
         return own
@@ -135,7 +132,7 @@ def _compared(before: BySeed, after: BySeed) -> tuple[list[float], str]:
     pairs = [(before[seed], after[seed]) for seed in sorted(before.keys() & after.keys())]
     if pairs:
         ratios = [1.0 if old == new else new / old if old else math.inf for old, new in pairs]
-        if all(each == 1 for each in ratios):
+        if all(value == 1 for value in ratios):
             return ratios, ""
         ends = interval(ratios)
         return ratios, UNKNOWN if ends is None else _outside(1.0, 1.0, *ends)
@@ -151,21 +148,18 @@ def _outside(low: float, high: float, other_low: float, other_high: float) -> st
     return BEYOND if high < other_low or other_high < low else WITHIN
 
 
-def summary(found: Difference) -> list[dict[str, str]]:
+def changes_by_measure(difference: Difference) -> list[dict[str, str]]:
     """One line per measure: how many points moved, how many of them surely, and how far."""
     lines = []
-    for measure in MEASURES:
-        moved = sorted((c for c in found.changes if c.measure == measure), key=lambda c: c.ratio)
-        sure = sum(change.certainty == BEYOND for change in moved)
-        ends = [percent(moved[end].ratio - 1) for end in (0, -1)] if moved else ["", ""]
+    for measure in COMPARED:
+        moved = [change for change in difference.changes if change.measure == measure]
         lines.append(
             {
                 "measure": measure,
-                "points in both": str(found.common),
+                "points in both": str(difference.common),
                 "moved": str(len(moved)),
-                BEYOND: str(sure),
-                "from": ends[0],
-                "to": ends[1],
+                BEYOND: str(sum(change.certainty == BEYOND for change in moved)),
+                **extremes(change.ratio - 1 for change in moved),
             }
         )
     return lines

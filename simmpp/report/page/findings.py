@@ -18,7 +18,7 @@ from simmpp.report.page.contest import (
     UNKNOWN,
     UNSURE,
     Contest,
-    contests,
+    contests_of,
     replicated_policies,
 )
 from simmpp.report.page.points import Points
@@ -44,37 +44,37 @@ class Win:
 
 def sentences(points: Points) -> list[str]:
     """The answer in a few lines."""
-    found = contests(points)
-    if not found:
+    contests = contests_of(points)
+    if not contests:
         return ["No point has a result."]
-    lines = [_fastest(points, found), *_best_gains(points)]
-    return [*lines, *_ceiling(points, found), *_failed(points)]
+    lines = [_fastest(points, contests), *_best_gains(points)]
+    return [*lines, *_ceiling(points, contests), *_failed(points)]
 
 
-def _fastest(points: Points, found: Sequence[Contest]) -> str:
+def _fastest(points: Points, contests: Sequence[Contest]) -> str:
     wins: dict[str, list[Contest]] = {}
-    for each in found:
-        if each.certainty != EQUAL:
-            wins.setdefault(points.profits[each.best]["policy"], []).append(each)
+    for contest in contests:
+        if contest.certainty != EQUAL:
+            wins.setdefault(points.profits[contest.best]["policy"], []).append(contest)
     ranked = sorted(wins.items(), key=lambda item: -len(item[1]))
-    equal = sum(each.certainty == EQUAL for each in found)
+    equal = sum(contest.certainty == EQUAL for contest in contests)
     parts = [f"{words.policy(title)} at {len(won)}{_of_these(won)}" for title, won in ranked]
     parts += [f"at {equal} the two fastest are equal"] if equal else []
-    if len(found) == 1:
+    if len(contests) == 1:
         who = (
-            f"{words.policy(ranked[0][0])}{_of_these(found)}"
+            f"{words.policy(ranked[0][0])}{_of_these(contests)}"
             if ranked
             else "not one: two are equal"
         )
         return f"The fastest dataflow is {who}."
     axes = ", ".join(words.SHORT.get(name, name) for name in points.axes)
-    places = f"{counted(len(found), 'place')}{f' ({axes})' if axes else ''}"
+    places = f"{counted(len(contests), 'place')}{f' ({axes})' if axes else ''}"
     return f"Of {places} the fastest dataflow is {'; '.join(parts)}."
 
 
 def _of_these(won: Sequence[Contest]) -> str:
-    unsure = sum(each.certainty == UNSURE for each in won)
-    if any(each.certainty == UNKNOWN for each in won):
+    unsure = sum(contest.certainty == UNSURE for contest in won)
+    if any(contest.certainty == UNKNOWN for contest in won):
         return " (how sure is not known: too few seeds)"
     if not unsure:
         return ""
@@ -85,7 +85,7 @@ def _best_gains(points: Points) -> Iterator[str]:
     """Where each dataflow but the reference gains most and least."""
     no_flows = {REFERENCE, *replicated_policies(points)}
     titles = dict.fromkeys(row["policy"] for row in points.profits)
-    for title in (each for each in titles if each not in no_flows):
+    for title in (title for title in titles if title not in no_flows):
         of_title = [
             n
             for n, row in enumerate(points.profits)
@@ -118,13 +118,14 @@ def _interval(points: Points, number: int) -> str:
     return f"95 % interval {low:.3g} to {high:.3g}" if words.is_number(low) and low < high else ""
 
 
-def _ceiling(points: Points, found: Sequence[Contest]) -> Iterator[str]:
-    ceilings = [each.ceiling for each in found if each.ceiling is not None]
+def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
+    ceilings = [contest.ceiling for contest in contests if contest.ceiling is not None]
     if ceilings:
-        beaten = sum(each < 1 for each in ceilings)
+        beaten = sum(ceiling < 1 for ceiling in ceilings)
+        longer = span(1 / ceiling for ceiling in ceilings)
         text = (
             "With everything in every memory (replicated, no dataflow) the picture takes "
-            f"{span(1 / each for each in ceilings)} times as long as with the fastest dataflow"
+            f"{longer} times as long as with the fastest dataflow"
         )
         several = f"; at {beaten or 'none'} of {len(ceilings)} places a dataflow beats it"
         yield f"{text}{several if len(ceilings) > 1 else ''}."
@@ -142,24 +143,24 @@ def wins(points: Points) -> list[Win]:
     curves: dict[str, list[Contest]] = {}
     arrangement = arrange(points.profits, points.axes, along)
     names = [name for name in points.axes if name in (*arrangement.plate_axes, arrangement.facet)]
-    for each in contests(points):
-        of = words.point(points.profits[each.best], names)
-        curves.setdefault(of, []).append(each)
-    return [win for of, found in curves.items() for win in _wins_of(points, of, found, along)]
+    for contest in contests_of(points):
+        of = words.point(points.profits[contest.best], names)
+        curves.setdefault(of, []).append(contest)
+    return [win for of, contests in curves.items() for win in _wins_of(points, of, contests, along)]
 
 
-def _wins_of(points: Points, of: str, found: Sequence[Contest], along: str) -> Iterator[Win]:
+def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -> Iterator[Win]:
     by_winner: dict[str, list[int]] = {}
-    for place, each in enumerate(found):
-        by_winner.setdefault(_winner(points, each), []).append(place)
+    for place, contest in enumerate(contests):
+        by_winner.setdefault(_winner(points, contest), []).append(place)
     for winner, places in by_winner.items():
-        won = [found[place] for place in places]
+        won = [contests[place] for place in places]
         yield Win(
             of,
             winner,
-            _where(points, found, places, along),
+            _where(points, contests, places, along),
             len(places),
-            span(points.profits[each.best]["time_profit"] for each in won),
+            span(points.profits[contest.best]["time_profit"] for contest in won),
             _lead(points, won),
             _sure(won),
         )
@@ -171,9 +172,9 @@ def _winner(points: Points, contest: Contest) -> str:
     return " = ".join(sorted(titles))
 
 
-def _where(points: Points, found: Sequence[Contest], places: Sequence[int], along: str) -> str:
+def _where(points: Points, contests: Sequence[Contest], places: Sequence[int], along: str) -> str:
     """``"1.56 % to 40 %, 60 %"``: neighbours are joined, where they are numbers."""
-    cells = [points.profits[found[place].best][along] for place in places]
+    cells = [points.profits[contests[place].best][along] for place in places]
     values = [words.value(along, cell) for cell in cells] if along != "policy" else [""]
     if not all(map(words.is_number, points.axes.get(along, [""]))):
         return ", ".join(values)
@@ -183,16 +184,19 @@ def _where(points: Points, found: Sequence[Contest], places: Sequence[int], alon
 
 
 def _lead(points: Points, won: Sequence[Contest]) -> str:
-    ahead = [each for each in won if each.certainty != EQUAL and not math.isnan(each.lead)]
-    seconds = {points.profits[each.second or 0]["policy"] for each in ahead}
+    ahead = [
+        contest for contest in won if contest.certainty != EQUAL and not math.isnan(contest.lead)
+    ]
+    seconds = {points.profits[contest.second or 0]["policy"] for contest in ahead}
     if not ahead:
         return ""
-    return f"{span((each.lead - 1) * 100 for each in ahead)} % over {' or '.join(sorted(seconds))}"
+    lead = span((contest.lead - 1) * 100 for contest in ahead)
+    return f"{lead} % over {' or '.join(sorted(seconds))}"
 
 
 def _sure(won: Sequence[Contest]) -> str:
     counts: Mapping[str, int] = {
-        kind: sum(each.certainty == kind for each in won)
+        kind: sum(contest.certainty == kind for contest in won)
         for kind in (SURE, UNSURE, UNKNOWN, EQUAL, ALONE)
     }
     if counts[UNKNOWN]:
@@ -210,8 +214,8 @@ def _sure(won: Sequence[Contest]) -> str:
 
 def span(values: Iterable[float]) -> str:
     """``"1.3 to 1.71"``; one number where all are the same."""
-    found = sorted(value for value in values if words.is_number(value))
-    if not found:
+    ordered = sorted(value for value in values if words.is_number(value))
+    if not ordered:
         return ""
-    low, high = f"{found[0]:.3g}", f"{found[-1]:.3g}"
-    return low if low == high or math.isnan(found[0]) else f"{low} to {high}"
+    low, high = f"{ordered[0]:.3g}", f"{ordered[-1]:.3g}"
+    return low if low == high or math.isnan(ordered[0]) else f"{low} to {high}"

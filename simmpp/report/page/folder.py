@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,13 +12,13 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
 from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS
-from simmpp.run.rows import in_order
+from simmpp.run.record import read_record
+from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
 from simmpp.studies.bench.bench import BENCH
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
-from simmpp.studies.nebel98.verdict import COLUMNS as CLAIM_COLUMNS
+from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS
 from simmpp.sweeps.profits import profit_columns
-from simmpp.sweeps.sweep import PROFITS, RECORD, RESULTS, TIMINGS
 
 INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS}, {"fraction", "effective_fraction"}
 MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS}
@@ -40,7 +39,7 @@ class Folder:
     claims: Sequence[Mapping[str, str]] = ()
     timings: Sequence[Mapping[str, str]] = ()
     profits: Sequence[Row] = ()
-    """Those of ``profits.csv``: their intervals know how the number of seeds was chosen."""
+    """Those of ``profits.csv``, if there is one."""
     bench: Sequence[Row] = ()
     """Those of ``bench.csv``."""
     record: Mapping[str, Any] = field(default_factory=dict)
@@ -76,21 +75,22 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
     bench = _numbers(path / BENCH, bench_columns(()))
     if (path / RESULTS).is_file():
         rows, further = read_rows(path / RESULTS)
-        profits = _numbers(path / PROFITS, profit_columns())
+        table = _table(path / PROFITS, profit_columns())
+        profits = [_typed(row, path / PROFITS, line) for line, row in enumerate(table, 2)]
         return Folder(path, rows, further, {}, claims, timings, profits, bench, record)
-    found = {each: path / f"{each}.csv" for each in EXPERIMENTS if (path / f"{each}.csv").is_file()}
-    if not found and not bench:
+    files = {name: path / f"{name}.csv" for name in EXPERIMENTS}
+    experiments = {name: read_rows(file)[0] for name, file in files.items() if file.is_file()}
+    if not experiments and not bench:
         raise ConfigError(
             f"{name}: value {str(path)!r}: there are no rows: expected {RESULTS} (of run or "
             f"sweep), {EXPERIMENTS[0]}.csv (of reproduce) or {BENCH} (of bench)"
         )
-    experiments = {each: read_rows(file)[0] for each, file in found.items()}
     return Folder(path, _once(experiments), (), experiments, claims, timings, (), bench, record)
 
 
 def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:
     """All rows; a point that several experiments have is there once."""
-    rows = {tuple(row[key] for key in KEYS): row for each in experiments.values() for row in each}
+    rows = {tuple(row[key] for key in KEYS): row for of in experiments.values() for row in of}
     return in_order(rows.values())
 
 
@@ -100,7 +100,11 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     further = tuple(name for name in (texts[0] if texts else ()) if name not in COLUMNS)
     if len({row[METHOD] for row in texts}) > 1:
         further = (*further, METHOD)
-    return [_typed(row, path, line) for line, row in enumerate(texts, 2)], further
+    rows = [_typed(row, path, line) for line, row in enumerate(texts, 2)]
+    for line, row in enumerate(rows, 2):
+        if not row["error"] and row["makespan_ps"] == "":
+            raise ConfigError("expected results or an error", where=str(path), line=line)
+    return rows, further
 
 
 def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
@@ -133,8 +137,6 @@ def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:
             raise ConfigError(
                 f"column {name}: value {cell!r}: expected {expected}", where=str(path), line=line
             ) from None
-    if not typed["error"] and typed["makespan_ps"] == "":
-        raise ConfigError("expected results or an error", where=str(path), line=line)
     return typed
 
 
@@ -170,9 +172,6 @@ def _record(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
+        return read_record(path)
     except ValueError as error:
         raise ConfigError(f"damaged: {error}", where=str(path)) from None
-    if not isinstance(record, dict):
-        raise ConfigError("damaged: expected a JSON object", where=str(path))
-    return record

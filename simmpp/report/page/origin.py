@@ -39,8 +39,8 @@ def _settings(folder: Folder) -> Iterator[tuple[str, str]]:
         for key, value in config.items():
             if key not in UNSAID and value not in (None, {}, []):
                 yield key, _text(value)
-    if chosen := folder.record.get("set"):
-        yield "set", _text(chosen)
+    if overrides := folder.record.get("set"):
+        yield "set", _text(overrides)
 
 
 def _text(value: Any) -> str:
@@ -53,7 +53,7 @@ def _text(value: Any) -> str:
 
 
 def _machines(folder: Folder) -> Iterator[tuple[str, str]]:
-    machines = folder.record.get("machines") or [folder.record.get("machine")]
+    machines = folder.record.get("machines")
     for machine in machines if isinstance(machines, list) else []:
         if isinstance(machine, dict):
             shape = " x ".join(map(str, machine.get("shape") or ()))
@@ -72,8 +72,8 @@ def _times(folder: Folder) -> Iterator[tuple[str, str]]:
         if words.is_finite(wall_s := _number(row["wall_s"])):
             seconds[row["policy"]] = seconds.get(row["policy"], 0.0) + wall_s
     if seconds:
-        each = ", ".join(f"{words.policy(title)} {s:.3g} s" for title, s in seconds.items())
-        yield "time to simulate", f"{sum(seconds.values()):.3g} s on one core: {each}"
+        parts = ", ".join(f"{words.policy(title)} {s:.3g} s" for title, s in seconds.items())
+        yield "time to simulate", f"{sum(seconds.values()):.3g} s on one core: {parts}"
 
 
 def _number(text: str) -> float:

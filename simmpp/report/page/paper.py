@@ -11,7 +11,7 @@ from simmpp.report.page.points import Points
 from simmpp.run.point import REFERENCE
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
-from simmpp.sweeps.ratios import CONCURRENT, RAY, Measured, Point
+from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, Measurements
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""
@@ -23,18 +23,18 @@ ENOUGH = 3
 def paper_figures(folder: Folder, points: Points) -> list[Figure]:
     """Figures of all experiments in the folder, or of the one that its rows repeat."""
     numbers = {
-        Point(row["scene"], row["processors"], row["fraction"], row["policy"]): number
+        CurvePoint(row["scene"], row["processors"], row["fraction"], row["policy"]): number
         for number, row in enumerate(points.profits)
     }
     experiments = folder.experiments or _repeated(folder)
     return [
-        _figure(figure, Measured(experiments[name], numbers))
+        _figure(figure, Measurements(experiments[name], numbers))
         for figure, (name, _) in FIGURES.items()
         if name in experiments
     ]
 
 
-def _figure(name: str, measured: Measured) -> Figure:
+def _figure(name: str, measured: Measurements) -> Figure:
     panels = FIGURES[name][1](measured)
     title = panels[0].title if len(panels) == 1 else panels[0].title.partition(":")[0]
     note = "; ".join(filter(None, (panels[0].note, "shaded: what the paper states")))

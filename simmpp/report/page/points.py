@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from statistics import fmean
 
 from simmpp.common.files import Row
-from simmpp.report.page.arrangement import AXES, axes_of
-from simmpp.sweeps.profits import MEASURES, STATISTICS, profit_rows
+from simmpp.methods.columns import PLACE
+from simmpp.report.page.arrangement import axes_of
+from simmpp.run.point import REFERENCE
+from simmpp.run.rows import Seeds, by_place, finished, pairs
+from simmpp.sweeps.profits import profit_rows, profits_in_order
 
 ACCOUNTS = {
     "compute": "compute_ps",
@@ -17,7 +20,6 @@ ACCOUNTS = {
     "waiting": "waiting_ps",
 }
 """What PEs spend their time with, and its column."""
-STATISTICS_OF_ALL = tuple(measure + end for measure in MEASURES for end in STATISTICS)
 KINDS = {
     "requests": "request_messages",
     "objects": "object_messages",
@@ -31,13 +33,18 @@ KINDS = {
 class Points:
     """A point is one policy at one place of the axes; all three lists go by its number."""
 
-    profits: list[Row]
+    profits: Sequence[Row]
     """As in ``profits.csv``."""
-    runs: list[list[Row]]
-    """The rows of its seeds that did not fail."""
+    seeds: list[Seeds]
+    """Its rows that did not fail."""
     groups: list[int]
     """Number of its place: what all policies there have in common."""
     further: tuple[str, ...]
+
+    @cached_property
+    def runs(self) -> list[list[Row]]:
+        """The same without the seeds."""
+        return [list(seeds.values()) for seeds in self.seeds]
 
     @cached_property
     def axes(self) -> dict[str, list[object]]:
@@ -47,10 +54,10 @@ class Points:
     @cached_property
     def places(self) -> list[list[int]]:
         """The points of each place."""
-        found: list[list[int]] = [[] for _ in range(max(self.groups, default=-1) + 1)]
+        places: list[list[int]] = [[] for _ in range(max(self.groups, default=-1) + 1)]
         for number, group in enumerate(self.groups):
-            found[group].append(number)
-        return found
+            places[group].append(number)
+        return places
 
     def shares(self, number: int) -> dict[str, float]:
         """Shares of all PEs' time over all seeds, by account; none where a row does not know."""
@@ -72,28 +79,35 @@ class Points:
 
 
 def points_of(rows: Sequence[Row], further: tuple[str, ...], known: Sequence[Row] = ()) -> Points:
-    """Put the rows of each point together; of profits ``known`` the intervals are taken as such."""
-    names = (*AXES, *further)
-    by_key = {_key(row, names): row for row in known}
-    profits = [_as_known(row, by_key.get(_key(row, names))) for row in profit_rows(rows, further)]
-    of_point: dict[tuple[Hashable, ...], list[Row]] = {}
-    for row in rows:
-        of_point.setdefault(tuple(row[name] for name in (*names, "policy")), []).append(row)
-    places: dict[tuple[Hashable, ...], int] = {}
-    groups, runs = [], []
+    """Put the rows of each point together.
+
+    ``known`` are profits of ``profits.csv``, and taken as they are: only who wrote them knows by
+    which rule sweeps stopped. They are computed here for places where there are none, or none of
+    these seeds, as when a sweep at work has written one of the two files and not yet the other.
+    """
+    names = (*PLACE, *further)
+    places = by_place(rows, names)
+    of_place: dict[tuple[object, ...], dict[str, Row]] = {}
+    for row in known:
+        of_place.setdefault(tuple(row.get(name) for name in names), {})[row["policy"]] = row
+    written: list[Row] = []
+    rest: list[Row] = []
+    for place, policies in places.items():
+        if _counts(policies) == {title: row["n"] for title, row in of_place.get(place, {}).items()}:
+            written += of_place[place].values()
+        else:
+            rest += (row for seeds in policies.values() for row in seeds.values())
+    profits = profits_in_order([*written, *profit_rows(rest, further)], further)
+    numbers: dict[tuple[object, ...], int] = {}
+    groups, seeds = [], []
     for profit in profits:
         place = tuple(profit[name] for name in names)
-        groups.append(places.setdefault(place, len(places)))
-        runs.append([row for row in of_point[(*place, profit["policy"])] if not row["error"]])
-    return Points(profits, runs, groups, further)
+        groups.append(numbers.setdefault(place, len(numbers)))
+        seeds.append(finished(places[place][profit["policy"]]))
+    return Points(profits, seeds, groups, further)
 
 
-def _key(row: Row, names: Sequence[str]) -> tuple[Hashable, ...]:
-    return (*(row.get(name) for name in names), row["policy"])
-
-
-def _as_known(row: Row, known: Row | None) -> Row:
-    """With the intervals of ``profits.csv``, if that is of the same seeds."""
-    if known is None or known["n"] != row["n"]:
-        return row
-    return row | {name: known[name] for name in STATISTICS_OF_ALL}
+def _counts(policies: Mapping[str, Seeds]) -> dict[str, int]:
+    """How many profits each policy of a place has."""
+    references = policies.get(REFERENCE, {})
+    return {policy: len(pairs(references, seeds)) for policy, seeds in policies.items()}

@@ -22,9 +22,9 @@ from simmpp.report.page.groups import GROUPS, FigureGroup
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered
+from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.journal import is_at_work
-from simmpp.sweeps.sweep import RESULTS
 
 PAGE = "report.html"
 LOOK_S = 1.0

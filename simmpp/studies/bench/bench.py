@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 from pathlib import Path
 
 from simmpp.common.errors import ConfigError
@@ -15,7 +14,7 @@ from simmpp.common.files import write_csv
 from simmpp.config.axes import axes_of, keys_of
 from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
-from simmpp.methods.columns import KEYS
+from simmpp.methods.columns import PLACE
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.registry import DEFAULT_POLICY
@@ -24,13 +23,11 @@ from simmpp.run.provenance import result_versions
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
 from simmpp.studies.bench.figure import bench_panels
 from simmpp.studies.nebel98.figures import NAMES
-from simmpp.sweeps.adaptive import Frontier
-from simmpp.sweeps.executors import crew_for
 from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.plan import Plan, plan
+from simmpp.sweeps.plan import Plan, plan_of
 from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.stopping import seeds_in_order
-from simmpp.sweeps.sweep import Watcher, run_pending
+from simmpp.sweeps.sweep import Watcher, run_plans
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.tracer import trace
 
@@ -58,34 +55,32 @@ def bench(
     Raises ConfigError if the folder holds results of other versions.
     """
     refuse_unfit(config)
-    plans = {method: plan(_tried(config, method, seeds)) for method in METHODS}
+    plans = {method: plan_of(_tried(config, method, seeds)) for method in METHODS}
     full = plans[SIMULATE]
-    together = Plan(full.config, tuple(chain(*(each.points for each in plans.values()))), ())
     out.mkdir(parents=True, exist_ok=True)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
         _time_tracing(full, journal, watcher or Watcher())
-        with closing(crew_for(workers, None)) as crew:
-            run_pending(Frontier(together, journal), journal, crew, None, watcher or Watcher())
+        run_plans(plans.values(), journal, workers, watcher)
         return _written(plans, journal, out)
 
 
 def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
     full, outcomes = plans[SIMULATE], journal.outcomes
-    runs = [row for each in plans.values() for row in each.rows(outcomes)]
+    runs = [row for plan in plans.values() for row in plan.rows(outcomes)]
     good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if not row["error"]]
-    keys = (*KEYS[:3], *full.further)
+    keys = (*PLACE, *full.further)
     trace_s = {
-        each.scene: journal.trace_s[each.task.digest]
-        for each in full.points
-        if each.task.digest in journal.trace_s
+        planned.scene: journal.trace_s[planned.task.digest]
+        for planned in full.points
+        if planned.task.digest in journal.trace_s
     }
     rows = bench_rows(good, keys, trace_s)
     write_csv(rows, bench_columns(keys), out / BENCH)
-    found, files = rungs(rows, keys), [out / BENCH]
-    if found:
+    ladder, files = rungs(rows, keys), [out / BENCH]
+    if ladder:
         seeds = len(full.config.settings.seeds)
-        files += draw(bench_panels(found, NAMES, seeds), out / Path(BENCH).stem)
-    return Bench(found, files, [row["error"] for row in runs if row["error"]])
+        files += draw(bench_panels(ladder, NAMES, seeds), out / Path(BENCH).stem)
+    return Bench(ladder, files, [row["error"] for row in runs if row["error"]])
 
 
 def refuse_unfit(config: Config) -> None:
@@ -107,14 +102,14 @@ def _tried(config: Config, method: str, seeds: int) -> Config:
         for entry in long_policies(source.get("policy", DEFAULT_POLICY))
         if known is None or not isinstance(entry, dict) or entry["name"] in known
     ]
-    chosen = seeds_in_order(config.settings.seeds, min(most, seeds))
-    config = with_key(with_key(config, "method", method), "seeds", chosen)
+    first = seeds_in_order(config.settings.seeds, min(most, seeds))
+    config = with_key(with_key(config, "method", method), "seeds", first)
     return with_key(config, "policy", policies or [REFERENCE])
 
 
 def _time_tracing(full: Plan, journal: Journal, watcher: Watcher) -> None:
     """Trace each picture anew, whatever is cached; rays of another renderer take no tracing."""
-    firsts = {each.task.digest: each for each in reversed(full.points)}
+    firsts = {planned.task.digest: planned for planned in reversed(full.points)}
     for digest, first in firsts.items():
         config = first.point.config
         load_scene = config.ray_source.scene

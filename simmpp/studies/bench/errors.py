@@ -16,6 +16,7 @@ from typing import NamedTuple
 from simmpp.common.files import Row
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.run.point import REFERENCE
+from simmpp.run.rows import Seeds, by_place
 from simmpp.sweeps.profits import MEASURES, profits_of
 
 QUANTITIES = {"makespan": "makespan_ps", "messages": "messages", **MEASURES}
@@ -31,8 +32,8 @@ class Runs(NamedTuple):
     key: Row
     """What names the point."""
     policy: str
-    of_method: Mapping[str, Mapping[int, Row]]
-    references: Mapping[str, Mapping[int, Row]]
+    of_method: Mapping[str, Seeds]
+    references: Mapping[str, Seeds]
     """Those of object dataflow."""
 
 
@@ -47,17 +48,23 @@ def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, f
 
     ``keys`` name a point, ``trace_s`` are the seconds that tracing took, by scene.
     """
-    points: dict[tuple[object, ...], dict[str, dict[str, dict[int, Row]]]] = {}
+    by_method: dict[str, list[Row]] = {}
     for row in rows:
-        of_policy = points.setdefault(tuple(row[key] for key in keys), {})
-        of_policy.setdefault(row["policy"], {}).setdefault(row["method"], {})[row["seed"]] = row
-    found = []
-    for names, policies in points.items():
-        key = dict(zip(keys, names, strict=True))
-        for policy, of_method in policies.items():
-            runs = Runs(key, policy, of_method, policies[REFERENCE])
-            found += [row | {"trace_s": trace_s.get(str(key["scene"]), "")} for row in _rungs(runs)]
-    return found
+        by_method.setdefault(row["method"], []).append(row)
+    places = {method: by_place(of, keys) for method, of in by_method.items()}
+    lines: list[Row] = []
+    for place, policies in places.get(SIMULATE, {}).items():  # nothing can be judged elsewhere
+        key = dict(zip(keys, place, strict=True))
+        for policy in policies:
+            of_method = {m: at[place] for m, at in places.items() if policy in at.get(place, {})}
+            runs = Runs(
+                key,
+                policy,
+                {method: at[policy] for method, at in of_method.items()},
+                {method: at.get(REFERENCE, {}) for method, at in of_method.items()},
+            )
+            lines += [row | {"trace_s": trace_s.get(str(key["scene"]), "")} for row in _rungs(runs)]
+    return lines
 
 
 def seed_counts(method: str, simulated: int) -> list[int]:
@@ -83,8 +90,8 @@ def _rung(runs: Runs, method: str, groups: Sequence[Sequence[int]]) -> Row:
     row["reference_seeds"] = len(runs.of_method[SIMULATE]) - len(groups[0])
     row[CPU] = fmean(sum(of_seed[seed][CPU] for seed in group) for group in groups)
     for name in QUANTITIES:
-        said, true = _values(runs, method, name), _values(runs, SIMULATE, name)
-        row[f"{name}_error"] = _error(said, true, groups)
+        estimates, true = _values(runs, method, name), _values(runs, SIMULATE, name)
+        row[f"{name}_error"] = _error(estimates, true, groups)
         row[f"{name}_resolution"] = _resolution(list(true.values()))
     return row
 
@@ -97,22 +104,23 @@ def _values(runs: Runs, method: str, quantity: str) -> dict[int, float]:
     if runs.policy == REFERENCE:
         return {}
     base = runs.references[method]
-    pairs = {seed: profits_of([(base[seed], row)], column) for seed, row in of_seed.items()}
-    return {seed: values[0] for seed, values in pairs.items() if values}
+    both = {seed: [(base[seed], row)] for seed, row in of_seed.items() if seed in base}
+    profits = {seed: profits_of(pair, column) for seed, pair in both.items()}
+    return {seed: values[0] for seed, values in profits.items() if values}
 
 
 def _error(
-    said: Mapping[int, float], true: Mapping[int, float], groups: Sequence[Sequence[int]]
+    estimates: Mapping[int, float], true: Mapping[int, float], groups: Sequence[Sequence[int]]
 ) -> float | str:
     """Root mean square over groups of the relative error; empty where there is none."""
-    if not said or not true:
+    if not estimates or not true:
         return ""
-    found = []
+    errors = []
     for group in groups:
-        estimate = fmean(said[seed] for seed in group)
+        estimate = fmean(estimates[seed] for seed in group)
         reference = fmean(value for seed, value in true.items() if seed not in group)
-        found.append(_relative(estimate, reference))
-    return "" if any(map(math.isnan, found)) else root_mean_square(found)
+        errors.append(_relative(estimate, reference))
+    return "" if any(map(math.isnan, errors)) else root_mean_square(errors)
 
 
 def _relative(estimate: float, reference: float) -> float:
@@ -148,10 +156,10 @@ class Rung(NamedTuple):
 
 def rungs(rows: Iterable[Row], keys: Sequence[str]) -> list[Rung]:
     """Rows of ``bench.csv`` by scene, method and seeds; ``keys`` name a point."""
-    found: dict[tuple[str, str, int], list[Row]] = {}
+    lines: dict[tuple[str, str, int], list[Row]] = {}
     for row in rows:
-        found.setdefault((row["scene"], row["method"], row["seeds"]), []).append(row)
-    return [_over_points(*name, of_rung, keys) for name, of_rung in found.items()]
+        lines.setdefault((row["scene"], row["method"], row["seeds"]), []).append(row)
+    return [_over_points(*name, of_rung, keys) for name, of_rung in lines.items()]
 
 
 def _over_points(

@@ -10,25 +10,26 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.files import read_csv, replaced, write_text
+from simmpp.common.files import read_csv, replaced
 from simmpp.config.config import Config, config_from_mapping, described
 from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
+from simmpp.run.record import read_record, write_record
+from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.moves import Tables
 from simmpp.sweeps.profits import profit_columns
 
-PROFITS, RESULTS, RECORD = "profits.csv", "results.csv", "run.json"
 DIGESTS = "sha256"
 """Key of ``run.json``: the other files' digests."""
-IRRELEVANT = ("check", "engine")
-"""Keys of a configuration that change no integer."""
+IRRELEVANT_TO_INTEGERS = ("check", "engine")
+"""Keys of a configuration that change no integer. A journal has no such exception for the engine,
+which is a column of its rows."""
 MACHINES, WORKLOADS = "machines", "workloads"
 """What of ``run.json`` explains moves."""
 UPDATE = "run with --update to make one"
@@ -58,16 +59,16 @@ def read_baseline(path: Path, config: Config) -> Sweep:
     """
     folder = baseline_folder(path)
     try:
-        found = read_sweep(folder)
+        baseline = read_sweep(folder)
     except FileNotFoundError as error:
         missing = Path(error.filename).name if folder.is_dir() else "such folder"
         raise _wrong(path, f"there is no {missing}: {UPDATE}") from None
     except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise _wrong(path, f"it is no baseline ({reason}): {UPDATE}") from None
-    if problem := _other_settings(found.record["config"], config):
+    if problem := _other_settings(baseline.record["config"], config):
         raise _wrong(path, f"it is of other settings ({problem}): {UPDATE}")
-    return found
+    return baseline
 
 
 def _wrong(path: Path, problem: str) -> ConfigError:
@@ -76,8 +77,8 @@ def _wrong(path: Path, problem: str) -> ConfigError:
 
 def read_sweep(folder: Path) -> Sweep:
     """The tables in a folder; raises OSError, ValueError or csv.Error for what is none."""
-    record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-    if not isinstance(record, dict) or not isinstance(record.get("config"), dict):
+    record = read_record(folder / RECORD)
+    if not isinstance(record.get("config"), dict):
         raise ValueError(f"{RECORD} has no configuration")
     for name, digest in dict(record.get(DIGESTS, {})).items():
         if _digest(folder / name) != digest:
@@ -96,9 +97,9 @@ def _other_settings(recorded: dict[str, Any], config: Config) -> str:
     """What differs between the settings recorded and these; keys not known then had defaults."""
     here = described(config)
     defaults = described(config_from_mapping({"scene": here["scene"]}))
-    sides = [_merged(defaults, each) for each in (recorded, here)]
+    sides = [_merged(defaults, given) for given in (recorded, here)]
     for side in sides:
-        for key in IRRELEVANT:
+        for key in IRRELEVANT_TO_INTEGERS:
             side.pop(key, None)
     return difference(sides[0], sides[1], "in the baseline")
 
@@ -113,15 +114,15 @@ def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, 
 
 def reasons(baseline: Sweep, now: Sweep) -> list[str]:
     """Machines and workloads that are not what they were: why values may have moved."""
-    found = []
+    problems = []
     for old, new in zip(_machines(baseline), _machines(now), strict=False):
         if problem := difference(old, new, "in the baseline"):
-            found.append(f"machine {new.get('name')}, shape {new.get('shape')}: {problem}")
-    before, after = (each.record.get(WORKLOADS) for each in (baseline, now))
+            problems.append(f"machine {new.get('name')}, shape {new.get('shape')}: {problem}")
+    before, after = (sweep.record.get(WORKLOADS) for sweep in (baseline, now))
     if isinstance(before, dict) and isinstance(after, dict):
         others = [name for name in before if before[name] != after.get(name)]
-        found += [f"{name} was traced by other code, or is another scene" for name in others]
-    return found
+        problems += [f"{name} was traced by other code, or is another scene" for name in others]
+    return problems
 
 
 def _machines(sweep: Sweep) -> list[dict[str, Any]]:
@@ -138,7 +139,7 @@ def _machines(sweep: Sweep) -> list[dict[str, Any]]:
 def _by_place(value: Any) -> Any:
     """A list of mappings as a mapping, so that only what differs in it is told."""
     if isinstance(value, list) and value and isinstance(value[0], dict):
-        return {str(n): each for n, each in enumerate(value)}
+        return {str(n): part for n, part in enumerate(value)}
     return value
 
 
@@ -151,6 +152,6 @@ def write_baseline(obtained: Path, folder: Path) -> None:
     for name in (RESULTS, PROFITS):
         with replaced(folder / name) as part:
             part.write_bytes((obtained / name).read_bytes())
-    record = json.loads((obtained / RECORD).read_text(encoding="utf-8"))
+    record = read_record(obtained / RECORD)
     record[DIGESTS] = {name: _digest(obtained / name) for name in (PROFITS, RESULTS)}
-    write_text(json.dumps(record, indent=1) + "\n", folder / RECORD)
+    write_record(record, folder / RECORD)

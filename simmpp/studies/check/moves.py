@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from simmpp.methods.columns import NUMBERS
+from simmpp.sweeps.matching import extremes, matched, percent
 
-Row = Mapping[str, str]
-"""A line of a CSV file, cells as they are written."""
+Cells = Mapping[str, str]
+"""A line of a CSV file, as it is written."""
 
 EXACT = ("effective_fraction", *NUMBERS, "error")
 """Columns of ``results.csv`` that must be equal unless tolerances are given."""
-PROFITS = ("time_profit", "message_profit", "speedup", "efficiency")
+GUARDED = ("time_profit", "message_profit", "speedup", "efficiency")
 """Columns of ``profits.csv`` that a tolerance may be given for."""
-DERIVED = tuple(f"{name}{end}" for name in PROFITS[:2] for end in ("_low", "_high", "_min", "_max"))
+DERIVED = tuple(f"{name}{end}" for name in GUARDED[:2] for end in ("_low", "_high", "_min", "_max"))
 """Columns that follow from the others; their last digits are the statistics library's."""
-NOT_KEYS = {*EXACT, *PROFITS, *DERIVED, "engine", "n"}
+NOT_KEYS = {*EXACT, *GUARDED, *DERIVED, "engine", "n"}
 POINT, THERE, MISSING, NEW = "point", "there", "missing", "new"
 
 
@@ -26,8 +27,8 @@ POINT, THERE, MISSING, NEW = "point", "there", "missing", "new"
 class Tables:
     """The rows of a sweep's ``results.csv`` and ``profits.csv``."""
 
-    results: Sequence[Row]
-    profits: Sequence[Row]
+    results: Sequence[Cells]
+    profits: Sequence[Cells]
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,10 @@ class Move:
 def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> list[Move]:
     """Everything that moved, profits first; without tolerances nothing may.
 
-    With tolerances (of names in PROFITS) only these profits, points and errors are compared.
+    With tolerances (of names in GUARDED) only these profits, points and errors are compared.
     """
     allowed = {
-        name: tolerances.get(name) for name in PROFITS if not tolerances or name in tolerances
+        name: tolerances.get(name) for name in GUARDED if not tolerances or name in tolerances
     }
     exact = ("error",) if tolerances else EXACT
     return [
@@ -69,22 +70,22 @@ def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> 
 
 
 def _of_table(
-    baseline: Sequence[Row], now: Sequence[Row], allowed: Mapping[str, Fraction | None]
+    baseline: Sequence[Cells], now: Sequence[Cells], allowed: Mapping[str, Fraction | None]
 ) -> Iterator[Move]:
     old, new = ({key_of(row): row for row in rows} for rows in (baseline, now))
-    for key in dict.fromkeys([*old, *new]):
-        if key not in new:
+    for key, was, is_now in matched(old, new):
+        if is_now is None:
             yield Move(key, POINT, THERE, MISSING)
-        elif key not in old:
+        elif was is None:
             yield Move(key, POINT, MISSING, NEW)
         else:
             for name, tolerance in allowed.items():
-                before, after = old[key].get(name, ""), new[key].get(name, "")
+                before, after = was.get(name, ""), is_now.get(name, "")
                 if not _within(before, after, tolerance):
                     yield Move(key, name, before, after, tolerance)
 
 
-def key_of(row: Row) -> tuple[tuple[str, str], ...]:
+def key_of(row: Cells) -> tuple[tuple[str, str], ...]:
     """The axes of a row: all columns that are no result."""
     return tuple((name, value) for name, value in row.items() if name not in NOT_KEYS)
 
@@ -106,29 +107,22 @@ def relative_change(before: str, after: str) -> float | None:
     return change if math.isfinite(change) else None
 
 
-def summary(found: Sequence[Move]) -> list[dict[str, str]]:
+def moves_by_measure(moves: Sequence[Move]) -> list[dict[str, str]]:
     """One line per measure: how many rows moved, and by how much at least and at most."""
-    counted = []
-    for measure in dict.fromkeys(move.measure for move in found):
-        of_measure = [move for move in found if move.measure == measure]
-        changes = sorted(move.change for move in of_measure if move.change is not None)
-        counted.append(
-            {
-                "measure": measure,
-                "rows": str(len(of_measure)),
-                "from": percent(changes[0]) if changes else "",
-                "to": percent(changes[-1]) if changes else "",
-            }
-        )
-    return counted
+    lines = []
+    for measure in dict.fromkeys(move.measure for move in moves):
+        of_measure = [move for move in moves if move.measure == measure]
+        changes = [move.change for move in of_measure if move.change is not None]
+        lines.append({"measure": measure, "rows": str(len(of_measure)), **extremes(changes)})
+    return lines
 
 
-def lines(found: Sequence[Move], most: int | None = None) -> list[dict[str, str]]:
-    """One line per move, or the ``most`` that moved farthest, in the order of ``found``."""
-    ranked = sorted(range(len(found)), key=lambda n: (-_distance(found[n]), n))
-    chosen = sorted(ranked if most is None else ranked[:most])
-    axes = dict.fromkeys(name for n in chosen for name, _ in found[n].key)
-    return [_line(found[n], list(axes)) for n in chosen]
+def lines(moves: Sequence[Move], most: int | None = None) -> list[dict[str, str]]:
+    """One line per move, or the ``most`` that moved farthest, in their order."""
+    ranked = sorted(range(len(moves)), key=lambda n: (-_distance(moves[n]), n))
+    farthest = [moves[n] for n in sorted(ranked if most is None else ranked[:most])]
+    axes = list(dict.fromkeys(name for move in farthest for name, _ in move.key))
+    return [_line(move, axes) for move in farthest]
 
 
 def _distance(move: Move) -> float:
@@ -147,8 +141,3 @@ def _line(move: Move, axes: Sequence[str]) -> dict[str, str]:
         "change": "" if change is None else percent(change),
         "allowed": "none" if move.allowed is None else f"{float(move.allowed) * 100:g} %",
     }
-
-
-def percent(change: float) -> str:
-    """0.01234 -> ``+1.23 %``."""
-    return f"{change * 100:+.3g} %"

@@ -96,8 +96,8 @@ def estimate(
 
     xs = node_fractions(min(fractions))
     nodes: list[list[Node]] = [[] for _ in policies]
-    for each in range(seed, seed + replicates):
-        placements = rotated(workload, machine.processors, xs, rules, each)
+    for draw in range(seed, seed + replicates):
+        placements = rotated(workload, machine.processors, xs, rules, draw)
         for x, placement in zip(xs, placements, strict=True):
             at = share(x, workload.n_objects, machine.processors)
             reference = run(placement, PolicyParameters(REFERENCE))

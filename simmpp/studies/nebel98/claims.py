@@ -12,8 +12,8 @@ import math
 
 from simmpp.run.point import REFERENCE
 from simmpp.studies.nebel98.claims_concurrent import f4a, f4b, f4c, f4d, f5a, f6a, t2
-from simmpp.studies.nebel98.evidence import Evidence, cases, partitioned, ray_over_object, span
-from simmpp.studies.nebel98.verdict import Case, Verdict, verdict
+from simmpp.studies.nebel98.evidence import Evidence, criteria, partitioned, ray_over_object, span
+from simmpp.studies.nebel98.verdict import Criterion, Verdict, verdict
 from simmpp.sweeps.ratios import RAY, mean
 
 CLASSICAL = (REFERENCE, RAY)
@@ -31,7 +31,7 @@ def f3a(evidence: Evidence) -> Verdict:
         "F3a",
         "figure 3 (Tetrahedron5): object dataflow best where the scene is lightly partitioned",
         f"T(ray)/T(object) {span(lightly.values())} at 0.8 <= x < 1",
-        cases(lightly, evidence.figure3, CLASSICAL, above=1),
+        criteria(lightly, evidence.figure3, CLASSICAL, above=1),
     )
 
 
@@ -46,7 +46,7 @@ def f3b(evidence: Evidence) -> Verdict:
         "figure 3 (Tetrahedron5): ray dataflow may be best only where the scene is extensively "
         "partitioned",
         f"T(ray)/T(object) < 1 in {len(ray_wins)} of {len(ratios)} cases (x, nb){where}",
-        cases(ray_wins, evidence.figure3, CLASSICAL, high=EXTENSIVELY),
+        criteria(ray_wins, evidence.figure3, CLASSICAL, high=EXTENSIVELY),
     )
 
 
@@ -60,8 +60,8 @@ def f3c(evidence: Evidence) -> Verdict:
         "F3c",
         "figure 3 (Tetrahedron5): object dataflow best where there are many processors",
         f"mean of T(ray)/T(object) over X: {many:.3g} at nb = {MANY}, {few:.3g} at nb = {FEW}",
-        [Case(f"mean at nb = {MANY}", many, low=1, strict=True)],
-        [Case(f"the same against nb = {FEW}", many, low=few, strict=True)],
+        [Criterion(f"mean at nb = {MANY}", many, low=1, strict=True)],
+        [Criterion(f"the same against nb = {FEW}", many, low=few, strict=True)],
     )
 
 
@@ -72,7 +72,7 @@ def t1(evidence: Evidence) -> Verdict:
         "T1",
         "section 4.2.2 (64 PEs): object dataflow is more efficient than ray dataflow",
         f"T(ray)/T(object) {span(ratios.values())}",
-        cases(ratios, evidence.figure4, CLASSICAL, above=1),
+        criteria(ratios, evidence.figure4, CLASSICAL, above=1),
     )
 
 

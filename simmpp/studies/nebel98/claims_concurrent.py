@@ -10,7 +10,7 @@ from simmpp.run.point import REFERENCE
 from simmpp.studies.nebel98.evidence import (
     At,
     Evidence,
-    cases,
+    criteria,
     largest,
     largest_at,
     of_scene,
@@ -20,15 +20,15 @@ from simmpp.studies.nebel98.evidence import (
     rank_correlation,
     span,
 )
-from simmpp.studies.nebel98.verdict import Case, Verdict, verdict
+from simmpp.studies.nebel98.verdict import Criterion, Verdict, verdict
 from simmpp.sweeps.ratios import (
     CONCURRENT,
     MAKESPAN,
     MESSAGES,
     RAY,
     REPLICATED,
-    Measured,
-    Point,
+    CurvePoint,
+    Measurements,
     mean,
 )
 
@@ -59,8 +59,8 @@ def f4a(evidence: Evidence) -> Verdict:
         "figure 4 (64 PEs): time profit of concurrent dataflow 3.9 to 1.5 for x < 50 %, 1.7 to 1 "
         "for x >= 50 %",
         f"{span(below.values())} for x < 50 %, {span(above.values())} for x >= 50 %",
-        cases(below, evidence.figure4, GAINING, *_widened(TIME_BELOW))
-        + cases(above, evidence.figure4, GAINING, *_widened(TIME_ABOVE)),
+        criteria(below, evidence.figure4, GAINING, *_widened(TIME_BELOW))
+        + criteria(above, evidence.figure4, GAINING, *_widened(TIME_ABOVE)),
     )
 
 
@@ -74,8 +74,8 @@ def f4b(evidence: Evidence) -> Verdict:
         "F4b",
         "figure 4 (64 PEs): the largest time profit is Mountain5's, nearly 4",
         f"{gains[best]:.3g} at {best}; {MOUNTAIN5}'s largest is {own:.3g}",
-        [Case(f"{MOUNTAIN5}'s largest against the others'", own, low=others)],
-        cases({best: gains[best]}, evidence.figure4, GAINING, 3.5, 4.2),
+        [Criterion(f"{MOUNTAIN5}'s largest against the others'", own, low=others)],
+        criteria({best: gains[best]}, evidence.figure4, GAINING, 3.5, 4.2),
     )
 
 
@@ -91,8 +91,8 @@ def f4c(evidence: Evidence) -> Verdict:
         "F4c",
         "figure 4 (64 PEs): the curves of all scenes have very similar shapes, best at a low x",
         f"rank correlations {span(pairs.values())}; best x {span(best.values())}",
-        [Case(pair, value, low=ALIKE) for pair, value in pairs.items()],
-        [Case(f"{scene}'s best x", x, high=0.3) for scene, x in best.items()],
+        [Criterion(pair, value, low=ALIKE) for pair, value in pairs.items()],
+        [Criterion(f"{scene}'s best x", x, high=0.3) for scene, x in best.items()],
     )
 
 
@@ -108,8 +108,11 @@ def f4d(evidence: Evidence) -> Verdict:
         "figure 4 (64 PEs): below 10 % time profits fall, but stay >= 1.8",
         f"at the smallest x: {span(at_least.values())}, which is {span(of_best.values())} of the "
         "scene's best",
-        [Case(f"{at}, of the best", value, high=1, strict=True) for at, value in of_best.items()],
-        cases(at_least, evidence.figure4, GAINING, low=1.8),
+        [
+            Criterion(f"{at}, of the best", value, high=1, strict=True)
+            for at, value in of_best.items()
+        ],
+        criteria(at_least, evidence.figure4, GAINING, low=1.8),
     )
 
 
@@ -131,8 +134,8 @@ def f5a(evidence: Evidence) -> Verdict:
         "4's",
         f"{span(below.values())} for x < 50 %; rank correlations with the time profit "
         f"{span(alike.values())}",
-        cases(below, evidence.figure4, GAINING, *_widened(MESSAGES_BELOW)),
-        [Case(f"{scene}'s two curves", value, low=ALIKE) for scene, value in alike.items()],
+        criteria(below, evidence.figure4, GAINING, *_widened(MESSAGES_BELOW)),
+        [Criterion(f"{scene}'s two curves", value, low=ALIKE) for scene, value in alike.items()],
     )
 
 
@@ -145,7 +148,9 @@ def f6a(evidence: Evidence) -> Verdict:
         "figure 6 (Mountain5): acceleration between 32 and 128 PEs > 2.2 at every fraction",
         f"T(32)/T(128) {span(values.values())}",
         [
-            Case(f"x = {x:.4g}", value, ACCELERATION, strict=True, accounts=_scaling(measured, x))
+            Criterion(
+                f"x = {x:.4g}", value, ACCELERATION, strict=True, accounts=_scaling(measured, x)
+            )
             for x, value in values.items()
         ],
     )
@@ -162,7 +167,7 @@ def t2(evidence: Evidence) -> Verdict:
         [
             case
             for at, (value, policy) in fastest.items()
-            for case in cases({at: value}, measured, [policy], low=1)
+            for case in criteria({at: value}, measured, [policy], low=1)
         ],
     )
 
@@ -171,18 +176,19 @@ def _widened(band: tuple[float, float]) -> tuple[float, float]:
     return band[0] * (1 - WIDENED), band[1] * (1 + WIDENED)
 
 
-def _fastest(measured: Measured, at: At) -> tuple[float, str]:
+def _fastest(measured: Measurements, at: At) -> tuple[float, str]:
     """T(policy)/T(replicated) of the policy with the least, and its name; nan if one is missing."""
-    replicated = Point(*at, REPLICATED)
+    replicated = CurvePoint(*at, REPLICATED)
     times = {
-        policy: mean(measured.ratios(MAKESPAN, Point(*at, policy), replicated))
+        policy: mean(measured.ratios(MAKESPAN, CurvePoint(*at, policy), replicated))
         for policy in (REFERENCE, RAY, CONCURRENT)
     }
     policy = list(times)[int(np.argmin([*times.values()]))]
     return times[policy], policy
 
 
-def _scaling(measured: Measured, x: float) -> dict[str, dict[str, float]]:
+def _scaling(measured: Measurements, x: float) -> dict[str, dict[str, float]]:
     return {
-        f"{nb} PEs": measured.accounts(Point(MOUNTAIN5, nb, x, CONCURRENT)) for nb in (FEW, MANY)
+        f"{nb} PEs": measured.accounts(CurvePoint(MOUNTAIN5, nb, x, CONCURRENT))
+        for nb in (FEW, MANY)
     }

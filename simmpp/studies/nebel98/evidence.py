@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from simmpp.studies.nebel98.verdict import Case
-from simmpp.sweeps.ratios import CONCURRENT, Measured, Point, mean
+from simmpp.studies.nebel98.verdict import Criterion
+from simmpp.sweeps.ratios import CONCURRENT, CurvePoint, Measurements, mean
 
 
 class At(NamedTuple):
@@ -33,12 +32,12 @@ Values = dict[At, float]
 class Evidence:
     """The rows of the figures that claims are about."""
 
-    figure3: Measured
-    figure4: Measured
-    figure6: Measured
+    figure3: Measurements
+    figure4: Measurements
+    figure6: Measurements
 
 
-def points(measured: Measured) -> list[At]:
+def points(measured: Measurements) -> list[At]:
     """All cases, by scene, nb and x."""
     return [
         At(scene, processors, x)
@@ -48,36 +47,38 @@ def points(measured: Measured) -> list[At]:
     ]
 
 
-def ray_over_object(measured: Measured) -> Values:
+def ray_over_object(measured: Measurements) -> Values:
     """T(ray)/T(object)."""
     return {at: mean(measured.ray_over_object(*at)) for at in points(measured)}
 
 
-def profits(measured: Measured, column: str, policy: str = CONCURRENT) -> Values:
+def profits(measured: Measurements, column: str, policy: str = CONCURRENT) -> Values:
     """Object dataflow over a policy: the time profit (of MAKESPAN) or the message profit."""
     return {at: mean(measured.profit(column, *at, policy)) for at in points(measured)}
 
 
-def cases(
+def criteria(
     values: Values,
-    measured: Measured,
+    measured: Measurements,
     policies: Sequence[str],
     low: float = -math.inf,
     high: float = math.inf,
     *,
     above: float | None = None,
-) -> list[Case]:
-    """A case for each value, which must lie from low to high, or strictly above."""
+) -> list[Criterion]:
+    """A criterion for each value, which must lie from low to high, or strictly above."""
     strict = above is not None
     low = low if above is None else above
     return [
-        Case(str(at), value, low, high, strict, _accounts(measured, at, policies))
+        Criterion(str(at), value, low, high, strict, _accounts(measured, at, policies))
         for at, value in values.items()
     ]
 
 
-def _accounts(measured: Measured, at: At, policies: Sequence[str]) -> dict[str, dict[str, float]]:
-    return {policy: measured.accounts(Point(*at, policy)) for policy in policies}
+def _accounts(
+    measured: Measurements, at: At, policies: Sequence[str]
+) -> dict[str, dict[str, float]]:
+    return {policy: measured.accounts(CurvePoint(*at, policy)) for policy in policies}
 
 
 def partitioned(values: Values) -> Values:
@@ -102,19 +103,15 @@ def largest_at(values: Values) -> At:
 
 def span(values: Iterable[float]) -> str:
     """From the least to the largest."""
-    found = sorted(values)
-    return f"{found[0]:.3g} to {found[-1]:.3g}" if found else "of no case"
+    ordered = sorted(values)
+    return f"{ordered[0]:.3g} to {ordered[-1]:.3g}" if ordered else "of no case"
 
 
 def rank_correlation(a: Values, b: Values) -> float:
     """Spearman's, of two curves over the same X; nan if one is missing or constant."""
-    ranks = [_ranks([value for _, value in sorted(each.items())]) for each in (a, b)]
+    from scipy.stats import rankdata  # takes half a second, and reports need no ranks
+
+    curves = ([value for _, value in sorted(values.items())] for values in (a, b))
+    ranks = [rankdata(curve, nan_policy="propagate") for curve in curves]
     with np.errstate(invalid="ignore"):
         return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
-
-
-def _ranks(values: list[float]) -> NDArray[np.float64]:
-    """The rank of each value, equal ones sharing theirs; nan if one is missing."""
-    _, which, counts = np.unique(values, return_inverse=True, return_counts=True)
-    ranks = np.cumsum(counts) - (counts - 1) / 2
-    return np.where(np.isnan(values).any(), np.nan, ranks[which])

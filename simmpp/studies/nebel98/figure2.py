@@ -14,8 +14,8 @@ from simmpp.studies.nebel98.figure2_data import (
     DEFAULT_RATIOS,
     model_grid,
     model_times,
-    panels,
     rows_of,
+    winner_maps,
     write_model,
 )
 from simmpp.studies.nebel98.figure2_plot import draw_figure2
@@ -35,17 +35,17 @@ def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Ver
     times = model_times(config, workload, grid)
     write_model(rows_of(times, workload.name, ANALYTICAL, 0.0), out)
     costs, rays = costs_of(config.machine_for(config.processors), workload), rays_of(workload)
-    maps = panels(costs, rays, grid, DEFAULT_RATIOS, config.settings.seeds[0])
+    maps = winner_maps(costs, rays, grid, DEFAULT_RATIOS, config.settings.seeds[0])
     draw_figure2(maps, f"Figure 2: analytical model, {workload.name}", out)
     return [
         Verdict(
-            each.claim,
-            f"Nebel 1998, figure 2 (model): {SAID[each.claim]}",
-            each.simulated,
-            HOLDS if each.holds else DOES_NOT,
+            claim.claim,
+            f"Nebel 1998, figure 2 (model): {SAID[claim.claim]}",
+            claim.simulated,
+            HOLDS if claim.holds else DOES_NOT,
             _by(costs, rays),
         )
-        for each in claims(times)
+        for claim in claims(times)
     ]
 
 

@@ -23,7 +23,7 @@ from simmpp.placement.place import place
 from simmpp.workload.workload import Workload
 
 ANALYTICAL, MEASURED = "analytical", "analytical-measured"
-COLUMNS = (
+MODEL_COLUMNS = (
     "scene",
     "processors",
     "fraction",
@@ -53,7 +53,7 @@ class Grid(NamedTuple):
     """Keys that the sweep changes and that the model would see, but has no axis for."""
 
 
-class Panel(NamedTuple):
+class WinnerMap(NamedTuple):
     """One map of figure 2."""
 
     title: str
@@ -120,8 +120,9 @@ def _measured(config: Config, workload: Workload, grid: Grid) -> Makespans:
             seed = config.settings.seeds[0]
             placement = place(workload, nb, memory, config.placement_rules, seed)
             for which, dataflow in enumerate(DATAFLOWS):
-                found = measured(workload, machine, placement, dataflow)
-                times[which, row, column] = found.makespan_ps
+                times[which, row, column] = measured(
+                    workload, machine, placement, dataflow
+                ).makespan_ps
     fractions = np.array([float(x) for x in grid.fractions])
     return Makespans(np.array(grid.processors), fractions, times[0], times[1])
 
@@ -148,23 +149,25 @@ def rows_of(times: Makespans, scene: str, method: str, imbalance: float) -> list
 
 def write_model(rows: Sequence[Row], folder: Path) -> None:
     """Write ``figure2.csv``."""
-    write_csv(rows, COLUMNS, folder / "figure2.csv")
+    write_csv(rows, MODEL_COLUMNS, folder / "figure2.csv")
 
 
-def panels(
+def winner_maps(
     costs: Costs, rays: Rays, grid: Grid, ratios: Sequence[tuple[str, float]], seed: int
-) -> list[Panel]:
+) -> list[WinnerMap]:
     """Maps for the costs themselves and each ratio, without and with imbalance."""
     variants = [("this machine", costs)]
     variants += [(f"{name} x {factor:g}", costs.scaled(name, factor)) for name, factor in ratios]
     return [
-        _panel(f"{title}, imbalance {imbalance:g}", chosen, rays, grid, imbalance, seed)
+        _winner_map(f"{title}, imbalance {imbalance:g}", scaled, rays, grid, imbalance, seed)
         for imbalance in (0.0, FIGURE_IMBALANCE)
-        for title, chosen in variants
+        for title, scaled in variants
     ]
 
 
-def _panel(title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, seed: int) -> Panel:
+def _winner_map(
+    title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, seed: int
+) -> WinnerMap:
     few = grouped(rays, FINE_STEPS)
     lowest, highest = max(min(grid.processors), 2), max(grid.processors)
     if highest <= lowest:
@@ -172,7 +175,7 @@ def _panel(title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, s
     fine = np.unique(np.geomspace(lowest, highest, FINE_PROCESSORS).round().astype(np.int64))
     shares = np.linspace(0.0, 1.0, FINE_FRACTIONS)
     own = [float(x) for x in grid.fractions]
-    return Panel(
+    return WinnerMap(
         title,
         analytical(
             costs, fine.tolist(), shares.tolist(), few, imbalance=imbalance, seed=seed, draws=DRAWS

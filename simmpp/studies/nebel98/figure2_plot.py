@@ -14,7 +14,7 @@ from matplotlib.ticker import NullLocator
 
 from simmpp.model.analytical import Makespans
 from simmpp.model.border import winners
-from simmpp.studies.nebel98.figure2_data import Panel
+from simmpp.studies.nebel98.figure2_data import WinnerMap
 
 RAY_COLOUR, OBJECT_COLOUR = "#cfe3f5", "#e69f00"
 """Light blue and orange differ in lightness too: the map holds in grey and for the colour-blind
@@ -25,7 +25,7 @@ MARGIN = 1.12
 """Room for the marks of the first and the last nb."""
 
 
-def draw_figure2(panels: Sequence[Panel], heading: str, folder: Path) -> list[Path]:
+def draw_figure2(panels: Sequence[WinnerMap], heading: str, folder: Path) -> list[Path]:
     """Write ``figure2.png`` and ``figure2.svg``; returns their paths."""
     across = min(len(panels), PANELS_ACROSS)
     down = -(-len(panels) // across)
@@ -49,7 +49,7 @@ def draw_figure2(panels: Sequence[Panel], heading: str, folder: Path) -> list[Pa
     return paths
 
 
-def _map(axes: Axes, panel: Panel) -> None:
+def _map(axes: Axes, panel: WinnerMap) -> None:
     fine = panel.fine
     x, nb = fine.fractions, fine.processors
     difference = np.log(fine.ratio)
@@ -72,9 +72,9 @@ def _dots(axes: Axes, grid: Makespans) -> None:
     x, nb = np.meshgrid(grid.fractions, grid.processors)
     won = winners(grid)
     for sign, marker, face in ((-1, "o", "white"), (1, "s", "black")):
-        chosen = won == sign
+        theirs = won == sign
         axes.scatter(
-            x[chosen], nb[chosen], 9, face, marker=marker, edgecolors="black", linewidths=0.4
+            x[theirs], nb[theirs], 9, face, marker=marker, edgecolors="black", linewidths=0.4
         )
 
 

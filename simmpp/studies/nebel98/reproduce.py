@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from importlib.resources import as_file, files
-from itertools import chain
 from pathlib import Path
 
 from simmpp.common.files import Row, write_csv, write_text
@@ -16,23 +14,23 @@ from simmpp.methods.columns import result_columns
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
 from simmpp.run.provenance import all_versions, result_versions
+from simmpp.run.record import write_record
+from simmpp.run.rows import RECORD
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.figure2 import reproduce_figure2
 from simmpp.studies.nebel98.figures import FIGURES
-from simmpp.studies.nebel98.verdict import COLUMNS, Verdict
-from simmpp.sweeps.adaptive import Frontier
-from simmpp.sweeps.executors import crew_for
+from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS, Verdict
 from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.plan import Plan, plan
-from simmpp.sweeps.ratios import Measured
-from simmpp.sweeps.sweep import Watcher, run_pending
+from simmpp.sweeps.plan import plan_of
+from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.sweep import Watcher, run_plans
 
 EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
 """Stems of configurations, of the rows they give and of the figures that show them."""
 MODEL = "figure2"
 """Likewise, of the analytical model."""
-CLAIMS, RECORD = "claims.csv", "run.json"
+CLAIMS = "claims.csv"
 _FOLDER = files("simmpp") / "studies" / "nebel98"
 
 
@@ -66,23 +64,20 @@ def reproduce(
     Raises ConfigError if the folder holds results of other versions.
     """
     overrides = _overrides(seeds, resolution)
-    plans = {name: plan(load_experiment(name, overrides)) for name in EXPERIMENTS}
+    plans = {name: plan_of(load_experiment(name, overrides)) for name in EXPERIMENTS}
     out.mkdir(parents=True, exist_ok=True)
-    everything = _together(plans)
     with closing(Journal(out, {"versions": result_versions()})) as journal:
-        pending = sum(not journal.finished(task.key) for task in everything.tasks)
-        with closing(crew_for(max(1, min(workers, pending)), None)) as crew:
-            run_pending(Frontier(everything, journal), journal, crew, None, watcher or Watcher())
-        rows = {name: each.rows(journal.outcomes) for name, each in plans.items()}
+        run_plans(plans.values(), journal, workers, watcher)
+        rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
         model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)
     return _report(rows, verdicts, overrides, out)
 
 
 def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
-    chosen = [] if seeds is None else [f"seeds={list(range(seeds))}"]
-    chosen += [] if resolution is None else [f"picture.resolution={resolution}"]
-    return tuple(chosen)
+    keys = [] if seeds is None else [f"seeds={list(range(seeds))}"]
+    keys += [] if resolution is None else [f"picture.resolution={resolution}"]
+    return tuple(keys)
 
 
 def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
@@ -91,31 +86,24 @@ def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
         return load_config(path, overrides)
 
 
-def _together(plans: Mapping[str, Plan]) -> Plan:
-    """One plan of all points: equal ones are simulated once, neighbours share what they can."""
-    first = next(iter(plans.values()))
-    return Plan(first.config, tuple(chain(*(each.points for each in plans.values()))), ())
-
-
 def _report(
     rows: Mapping[str, list[Row]], verdicts: list[Verdict], overrides: Sequence[str], out: Path
 ) -> Reproduction:
     """Write configurations, rows, figures, claims and the record; ``verdicts`` are the model's."""
     for name in (MODEL, *rows):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
-    for name, each in rows.items():
-        write_csv(each, result_columns(), out / f"{name}.csv")
-    measured = {name: Measured(each) for name, each in rows.items()}
+    for name, table in rows.items():
+        write_csv(table, result_columns(), out / f"{name}.csv")
+    measured = {name: Measurements(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
         draw(panels(measured[name]), out / figure)
     verdicts += judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
-    write_csv([asdict(each) for each in verdicts], COLUMNS, out / CLAIMS)
-    record = {"set": list(overrides), "versions": all_versions()}
-    write_text(json.dumps(record, indent=1) + "\n", out / RECORD)
-    errors = [row["error"] for each in rows.values() for row in each if row["error"]]
+    write_csv([asdict(verdict) for verdict in verdicts], CLAIM_COLUMNS, out / CLAIMS)
+    write_record({"set": list(overrides), "versions": all_versions()}, out / RECORD)
+    errors = [row["error"] for table in rows.values() for row in table if row["error"]]
     return Reproduction(verdicts, errors)
 
 
 def _said(overrides: Sequence[str]) -> str:
     """A comment on top of a configuration that was not run as it is."""
-    return f"# Run with {' '.join(f'--set {each!r}' for each in overrides)}\n" if overrides else ""
+    return f"# Run with {' '.join(f'--set {key!r}' for key in overrides)}\n" if overrides else ""

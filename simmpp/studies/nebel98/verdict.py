@@ -1,4 +1,4 @@
-"""Whether a claim holds: its cases, one by one, and how far the tightest is from its bound."""
+"""Whether a claim holds: its criteria, one by one, and how far the tightest is from its bound."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 HOLDS, IN_PART, DOES_NOT = "holds", "in part", "does not"
-COLUMNS = ("claim", "paper", "simulated", "holds", "by")
+CLAIM_COLUMNS = ("claim", "paper", "simulated", "holds", "by")
 """Of ``claims.csv``."""
 
 
 @dataclass(frozen=True)
-class Case:
+class Criterion:
     """One value that must lie between two bounds."""
 
     label: str
@@ -48,7 +48,7 @@ class Case:
         return f"{self.low:.4g} to {self.high:.4g}"
 
 
-Part = Sequence[Case]
+Part = Sequence[Criterion]
 """What a predicate asks of each of several cases; without a case it is true."""
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from simmpp.methods.columns import COLUMNS
-from simmpp.studies.check.moves import Move, Tables, lines, moves, percent, summary
+from simmpp.studies.check.moves import Move, Tables, lines, moves, moves_by_measure
+from simmpp.sweeps.matching import percent
 from simmpp.sweeps.profits import profit_columns
 
 TWO_PERCENT = {"time_profit": Fraction(2, 100)}
@@ -108,6 +109,11 @@ def test_lines_and_summary() -> None:
          "change": "", "allowed": "none"},
     ]  # fmt: skip
     assert lines(found)[2]["allowed"] == "1 %"
-    assert summary(found)[0] == {"measure": "tests", "rows": "2", "from": "-10 %", "to": "+1 %"}
+    assert moves_by_measure(found)[0] == {
+        "measure": "tests",
+        "rows": "2",
+        "from": "-10 %",
+        "to": "+1 %",
+    }
     assert percent(0.012345) == "+1.23 %"
     assert Move(key, "tests", "0", "5").change is None

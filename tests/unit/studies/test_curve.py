@@ -116,18 +116,24 @@ def test_one_processor_has_nothing_to_gain(workload: Workload) -> None:
     assert rows == [Estimate("concurrent", Fraction(1, 10), 1.0, 0.0, 1.0, 0.0)]
 
 
+OUT_OF_RANGE = "curve: expected fractions from 0 to 1, and 1 replicate or more"
+DRAWN = "curve: random owners or pixels: expected residents alone to be drawn"
+
+
 @pytest.mark.parametrize(
-    "wrong",
+    ("wrong", "problem"),
     [
-        {"fractions": []},
-        {"fractions": [Fraction(-1, 2)]},
-        {"fractions": [Fraction(3, 2)]},
-        {"replicates": 0},
-        {"rules": PlacementRules(pixels="random")},
-        {"rules": PlacementRules(owners="random")},
+        ({"fractions": []}, OUT_OF_RANGE),
+        ({"fractions": [Fraction(-1, 2)]}, OUT_OF_RANGE),
+        ({"fractions": [Fraction(3, 2)]}, OUT_OF_RANGE),
+        ({"replicates": 0}, OUT_OF_RANGE),
+        ({"rules": PlacementRules(pixels="random")}, DRAWN),
+        ({"rules": PlacementRules(owners="random")}, DRAWN),
     ],
 )
-def test_what_it_cannot_do_is_refused(workload: Workload, wrong: dict[str, object]) -> None:
+def test_what_it_cannot_do_is_refused(
+    workload: Workload, wrong: dict[str, object], problem: str
+) -> None:
     arguments = {"fractions": FRACTIONS} | wrong
-    with pytest.raises(ConfigError, match=r"curve: .* expected|curve: expected"):
+    with pytest.raises(ConfigError, match=f"^{problem}$"):
         estimate(workload, MACHINE, POLICIES[:1], **arguments)  # type: ignore[arg-type]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from simmpp.config.config import config_from_mapping, with_key
+from simmpp.methods.columns import NUMBERS
+from simmpp.methods.simulation import integers
 from simmpp.run.inputs import workload_of
 from simmpp.run.point import make_point, run_point
-from simmpp.run.rows import numbers
-from simmpp.sweeps.plan import plan
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.sweep import run_sweep
 from simmpp.sweeps.worker import run_task
 
@@ -31,13 +32,13 @@ def test_the_replicated_scene_lends_its_memory_to_no_other_point() -> None:
 def test_where_everything_is_in_memory_all_policies_are_one() -> None:
     for sweep in ({"memory.fraction": [1]}, {"processors": [1], "memory.fraction": [0.1, 0.5]}):
         given = {**SETTINGS, "sweep": {"policy": ["object", "ray", "concurrent"], **sweep}}
-        made = plan(config_from_mapping(given))
-        assert len(made.tasks) == 1
-        rows = made.rows({task.key: run_task(task, None, None) for task in made.tasks})
+        plan = plan_of(config_from_mapping(given))
+        assert len(plan.tasks) == 1
+        rows = plan.rows({task.key: run_task(task) for task in plan.tasks})
         for each in rows:
             config = config_from_mapping({**given, "sweep": {}, "policy": each["policy"]})
             config = with_key(config, "processors", each["processors"])
             config = with_key(config, "memory.fraction", each["fraction"])
             point = make_point(config, workload_of(config))
             (alone,) = (run for run in run_point(point) if run.parameters.title == each["policy"])
-            assert numbers(alone) == {name: each[name] for name in numbers(alone)}
+            assert integers(alone.result) == {name: each[name] for name in NUMBERS}

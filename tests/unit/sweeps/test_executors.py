@@ -3,7 +3,8 @@
 import pytest
 
 from simmpp.common.errors import ConfigError
-from simmpp.sweeps.executors import crew_for
+from simmpp.sweeps.executors import pool_for
+from simmpp.sweeps.worker import run_task
 
 
 @pytest.mark.parametrize("address", ["foo", "tcp://127.0.0.1:9", "nonsense://x", ""])
@@ -13,5 +14,5 @@ def test_no_client_is_made_for_no_cluster(address: str, monkeypatch: pytest.Monk
     monkeypatch.setattr("simmpp.sweeps.executors.CONNECT_S", 1)
     monkeypatch.setattr(distributed, "Client", lambda *address, **options: made.append(address))
     with pytest.raises(ConfigError, match="--cluster: value "):
-        crew_for(1, address)
+        pool_for(1, address, run_task)
     assert not made

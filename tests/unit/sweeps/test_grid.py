@@ -12,7 +12,7 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.inputs import workload_of
 from simmpp.run.point import make_point
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
-from simmpp.sweeps.plan import plan
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.task import canonical
 
 BASE = {"scene": "tetra:1", "picture": {"resolution": 4}, "policy": "ray"}
@@ -69,22 +69,25 @@ def test_a_set_without_effect_is_refused(
 ) -> None:
     config = config_from_mapping({**BASE, "sweep": sweep}, [override])
     with pytest.raises(ConfigError) as caught:
-        plan(config)
+        plan_of(config)
     assert str(caught.value).startswith(f"--set {override.partition('=')[0]}: {problem}")
 
 
 def test_a_set_that_some_points_take_is_none_without_effect() -> None:
     sweep = {"points": [{"name": "a", "processors": 2}, {"name": "b"}]}
-    made = plan(config_from_mapping({**BASE, "sweep": sweep}, ["processors=9"]))
-    assert {each.point.config.processors for each in made.points} == {2, 9}
+    plan = plan_of(config_from_mapping({**BASE, "sweep": sweep}, ["processors=9"]))
+    assert {each.point.config.processors for each in plan.points} == {2, 9}
     swept = {"processors": [2, 3]}
-    plan(config_from_mapping({**BASE, "sweep": swept}, ["sweep.processors=[9]", "policy.batch=3"]))
+    effective = ["sweep.processors=[9]", "policy.batch=3"]
+    points = plan_of(config_from_mapping({**BASE, "sweep": swept}, effective)).points
+    assert {planned.point.config.processors for planned in points} == {9}
+    assert {p.point.policy.batch for p in points if p.point.policy.title == "ray"} == {3}
 
 
 def test_memory_in_bytes_is_not_dropped_for_a_swept_fraction() -> None:
     config = {**BASE, "memory": {"bytes": "1 kB"}, "sweep": {"memory.fraction": [0.1]}}
     with pytest.raises(ConfigError, match=r"memory.bytes: expected none: memory.fraction is swept"):
-        plan(config_from_mapping(config))
+        plan_of(config_from_mapping(config))
 
 
 def test_without_a_sweep_there_is_one_point() -> None:
@@ -136,8 +139,8 @@ def test_policies_that_differ_need_different_names() -> None:
 def test_what_no_rule_reads_makes_no_other_simulation() -> None:
     for policy, tasks in (("ray", 2), ("object", 1), ("replicated", 1)):
         sweep = {"policy.batch": [1, 9]}
-        made = plan(config_from_mapping({**BASE, "policy": policy, "sweep": sweep}))
-        assert len({each.task.key for each in made.points if each.point.policy.name == policy}) == (
+        plan = plan_of(config_from_mapping({**BASE, "policy": policy, "sweep": sweep}))
+        assert len({each.task.key for each in plan.points if each.point.policy.name == policy}) == (
             tasks
         )
     parameters = PolicyParameters("object", "mine", min_load=3, batch=2, ask_at_least=5)
@@ -154,11 +157,11 @@ def test_equal_points_are_one_simulation() -> None:
             {"name": "c", "processors": 2, "machine.quantum": 3},
         ]
     }
-    made = plan(config_from_mapping({**BASE, "sweep": sweep}))
-    assert len(made.points) == 6
-    assert len(made.tasks) == 4
+    plan = plan_of(config_from_mapping({**BASE, "sweep": sweep}))
+    assert len(plan.points) == 6
+    assert len(plan.tasks) == 4
     replicated = {**BASE, "policy": "replicated", "sweep": {"memory.fraction": [0.1, 0.5]}}
-    assert len(plan(config_from_mapping(replicated)).tasks) == 3
+    assert len(plan_of(config_from_mapping(replicated)).tasks) == 3
 
 
 @pytest.mark.parametrize(
@@ -179,8 +182,8 @@ def test_equal_points_are_one_simulation() -> None:
     ],
 )
 def test_what_decides_results_makes_other_simulations(key: str, values: list[object]) -> None:
-    made = plan(config_from_mapping({**BASE, "sweep": {key: values}}))
-    assert len(made.tasks) == 4
+    plan = plan_of(config_from_mapping({**BASE, "sweep": {key: values}}))
+    assert len(plan.tasks) == 4
 
 
 @pytest.mark.parametrize(
@@ -195,12 +198,12 @@ def test_what_decides_results_makes_other_simulations(key: str, values: list[obj
 )
 def test_every_key_of_concurrent_dataflow_is_read(key: str, values: list[object]) -> None:
     config = {**BASE, "policy": "concurrent", "sweep": {key: values}}
-    assert len(plan(config_from_mapping(config)).tasks) == len(values) + 1
+    assert len(plan_of(config_from_mapping(config)).tasks) == len(values) + 1
 
 
 def test_neighbouring_tasks_share_their_placement() -> None:
     sweep = {"policy.batch": [1, 9], "memory.fraction": [0.1, 0.5, 0.9]}
-    tasks = plan(config_from_mapping({**BASE, "sweep": sweep, "seeds": [0, 1]})).tasks
+    tasks = plan_of(config_from_mapping({**BASE, "sweep": sweep, "seeds": [0, 1]})).tasks
     keys = [task.placement_key for task in tasks]
     changes = sum(a != b for a, b in pairwise(keys))
     assert changes == len(set(keys)) - 1 == 5
@@ -215,9 +218,9 @@ def test_two_scenes_of_one_name_are_refused(tmp_path) -> None:  # type: ignore[n
         files[-1].write_text(f"{scene}f 1 1 1 1 0 0 0 0\ns {n} 0 0 1\n")
     sweep = {"scene": [str(file) for file in files]}
     with pytest.raises(ConfigError, match="two different points are both called scene x,"):
-        plan(config_from_mapping({**BASE, "sweep": sweep}))
+        plan_of(config_from_mapping({**BASE, "sweep": sweep}))
     named = {"points": [{"name": str(n), "scene": str(file)} for n, file in enumerate(files)]}
-    assert len(plan(config_from_mapping({**BASE, "sweep": named})).points) == 4
+    assert len(plan_of(config_from_mapping({**BASE, "sweep": named})).points) == 4
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,6 @@ def test_a_damaged_line_is_named(tmp_path: Path, line: bytes) -> None:
 
 
 def test_two_sweeps_in_one_folder_are_refused(tmp_path: Path) -> None:
-    pytest.importorskip("fcntl")
     journal = Journal(tmp_path, IDENTITY)
     with pytest.raises(ConfigError, match="another sweep is at work here"):
         Journal(tmp_path, IDENTITY)

@@ -15,7 +15,7 @@ from simmpp.report.page.contest import (
     UNKNOWN,
     UNSURE,
     Contest,
-    contests,
+    contests_of,
     replicated_policies,
 )
 from simmpp.report.page.findings import sentences, span, wins
@@ -30,7 +30,7 @@ def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
 
 
 def only(rows: list[Row]) -> Contest:
-    (found,) = contests(points_of(rows, ()))
+    (found,) = contests_of(points_of(rows, ()))
     return found
 
 
@@ -73,7 +73,7 @@ def test_the_replicated_scene_is_no_dataflow_whatever_its_label() -> None:
     rows += timed("all there", 100, 100, effective_fraction=1.0)
     points = points_of(rows, ())
     assert replicated_policies(points) == {"all there", "replicated"}
-    (found,) = contests(points)
+    (found,) = contests_of(points)
     assert points.profits[found.best]["policy"] == "ray"
     assert found.ceiling == 2
 

@@ -16,10 +16,10 @@ from simmpp.report.page.difference import (
     UNKNOWN,
     WITHIN,
     Change,
+    changes_by_measure,
     difference_of,
     line,
     ranked,
-    summary,
 )
 from simmpp.report.page.folder import Folder
 
@@ -130,7 +130,7 @@ def test_the_summary_counts_by_measure_and_sure_changes_come_first() -> None:
     )
     after = timed(50, 150, fraction=0.1) + timed(101, 101, fraction=0.5) + timed(7, 7, fraction=1.0)
     found = difference_of(folder(before), folder(after))
-    makespans = summary(found)[0]
+    makespans = changes_by_measure(found)[0]
     assert makespans == {
         "measure": "makespan",
         "points in both": "3",
