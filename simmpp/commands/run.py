@@ -98,7 +98,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     refuse_models(config)
     if looks.picture or verify:
         _require_scene(config, "--picture" if looks.picture else "--verify")
-    point = make_point(config, workload(config))
+    point = make_point(config, workload(config, simulating=True))
     if looks.picture:
         _write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
@@ -127,7 +127,9 @@ def _simulate(
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
     from simmpp.run.point import run_point
+    from simmpp.sweeps.worker import warm_up
 
+    warm_up(point.config.settings.engine)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
         tasks: dict[str, TaskID] = {}

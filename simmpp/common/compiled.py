@@ -12,12 +12,13 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from filelock import FileLock
 from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
@@ -148,6 +149,16 @@ def keeps_code() -> bool:
 def is_compiled(module: str) -> bool:
     """Has machine code of this module, as it is now, been kept by an earlier run?"""
     return any(_folder(module).rglob("*.nbi"))
+
+
+@contextmanager
+def compiled_by_one(module: str) -> Iterator[None]:
+    """If code of this module is missing, wait for the process that makes it; it is found then."""
+    with ExitStack() as held:
+        if not is_compiled(module) and keeps_code():
+            with suppress(OSError, NotImplementedError):  # some shared file systems have no locks
+                held.enter_context(FileLock(_folder(module) / "lock"))
+        yield
 
 
 def _folder(module: str) -> Path:
