@@ -27,6 +27,7 @@ from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_po
 from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import row, write_rows
 from simmpp.run.summary import summary
+from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
 from simmpp.workload.trace.verify import verify
@@ -108,7 +109,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     refuse_models(config)
     if looks.picture or verify:
         scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
-    point = make_point(config, workload(config))
+    point = make_point(config, workload(config, simulating=True))
     if looks.picture:
         _write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
@@ -127,6 +128,7 @@ def _simulate(
     point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
+    warm_up(point.config.settings.engine)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
         tasks: dict[str, TaskID] = {}

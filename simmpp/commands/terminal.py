@@ -50,14 +50,25 @@ def notice(text: str) -> None:
     click.echo(f"simmpp: {text}", err=True)
 
 
-def announce_compilation() -> None:
-    """Say why nothing seems to happen when engine and tracer are used for the first time."""
-    from simmpp.common.compiled import cache_folder, is_compiled, keeps_code
-    from simmpp.common.modules import CANDIDATES, STEP
+def announce_compilation(*, simulating: bool = True) -> None:
+    """Say why nothing seems to happen when tracer and engine are used for the first time.
 
-    if not all(map(is_compiled, (CANDIDATES, STEP))):
+    If both are, and there is a core for each, the engine is compiled by a process beside this one
+    until the command ends.
+    """
+    from simmpp.commands.options import available_cores
+    from simmpp.common.compiled import cache_folder, is_compiled, keeps_code
+    from simmpp.common.modules import CANDIDATES, ENGINE
+    from simmpp.sweeps.compile_engine import engine_compiled_beside
+
+    missing = [module for module in (CANDIDATES, ENGINE) if not is_compiled(module)]
+    if not simulating and ENGINE in missing:
+        missing.remove(ENGINE)
+    if missing:
         often = "once" if keeps_code() else f"each time, as {cache_folder()} can't be written"
         notice(f"compiling for this machine, {often}: about half a minute")
+    if len(missing) > 1 and available_cores() > 1 and keeps_code():
+        click.get_current_context().with_resource(engine_compiled_beside())
 
 
 @contextmanager

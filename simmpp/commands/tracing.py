@@ -15,21 +15,22 @@ from simmpp.workload.trace.tracer import Progress
 from simmpp.workload.workload import Workload
 
 
-def workload(config: Config) -> Workload:
+def workload(config: Config, *, simulating: bool = False) -> Workload:
     """The workload that a configuration names; whatever must be traced is traced with a bar."""
+    announce_compilation(simulating=simulating)
     with _bar() as progress:
         return workload_of(config, progress=progress, notice=notice)
 
 
 def traced(scene: Scene, picture: Picture) -> Workload:
     """The picture's workload, from the cache or traced with a bar."""
+    announce_compilation(simulating=False)
     with _bar() as progress:
         return workload_for(scene, picture, progress=progress, notice=notice)
 
 
 @contextmanager
 def _bar() -> Iterator[Progress]:
-    announce_compilation()
     with progress_bars() as bars:
         bar = bars.add_task("tracing rays", total=None)
         yield lambda done, total: bars.update(bar, completed=done, total=total)

@@ -12,34 +12,77 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
+from filelock import FileLock
+from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 PACKAGE = __name__.partition(".")[0]
+OPTIONS = {"nopython": True, "error_model": "numpy", "nogil": True}
+
+
+class _Compiled(CPUDispatcher):  # type: ignore[misc]
+    """Is compiled once, whoever calls it: all integers are int64, and no number is a type.
+
+    Left alone, numba would compile a function, and all that it calls, again for the int32 of a
+    record's field and for a number written at the call.
+    """
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """What numba asks for a call from compiled code."""
+        template, signature, _, rest = super().get_call_template(tuple(map(_widened, args)), kws)
+        return template, signature, args, rest
+
+
+class _Kernel(_Compiled):
+    """Has no code that Python could call."""
+
+    def __call__(self, *args: object) -> object:
+        """Refuse: without this, Python would jump to address 0."""
+        raise TypeError(f"{self.__name__} is called by compiled code only")
+
+
+def _widened(kind: Any) -> Any:
+    kind = numba.types.unliteral(kind)
+    return numba.types.int64 if isinstance(kind, numba.types.Integer) else kind
 
 
 def njit(function: Function) -> Function:
-    """Compile ``function`` on first use; no fastmath: results must not depend on the CPU.
+    """Compile ``function`` on first use, and keep it on disk with all that it calls.
 
-    It may make arrays, whoever calls it: left alone, numba would take that from the first caller.
+    For what Python calls. It may make arrays. No fastmath: results must not depend on the CPU.
     """
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": True})
     with _kept_for(function) as kept:
-        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=True)(function)
+        if kept:
+            compiled.enable_caching()
+    return cast(Function, compiled)
+
+
+def kernel(function: Function) -> Function:
+    """:func:`njit` for what only compiled code calls, and what makes no arrays.
+
+    It is kept within its callers. To compile it takes half the time: it has no wrappers for Python
+    and C. Its calls count no references: a search of a tree that calls one for each box takes a
+    third of the time, a run of the engines four fifths.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    without = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast(Function, _Kernel(function, targetoptions=OPTIONS | without))
 
 
 def njit_reading(function: Function) -> Function:
-    """:func:`njit` for functions that make no arrays: their calls count no references.
-
-    A search of a tree that calls one for each box takes a third of the time, a run of the engines,
-    all of whose arrays are made beforehand, four fifths.
-    """
+    """:func:`njit` for functions that make no arrays: their calls count no references."""
     with _kept_for(function) as kept:
         return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
 
@@ -106,6 +149,16 @@ def keeps_code() -> bool:
 def is_compiled(module: str) -> bool:
     """Has machine code of this module, as it is now, been kept by an earlier run?"""
     return any(_folder(module).rglob("*.nbi"))
+
+
+@contextmanager
+def compiled_by_one(module: str) -> Iterator[None]:
+    """If code of this module is missing, wait for the process that makes it; it is found then."""
+    with ExitStack() as held:
+        if not is_compiled(module) and keeps_code():
+            with suppress(OSError, NotImplementedError):  # some shared file systems have no locks
+                held.enter_context(FileLock(_folder(module) / "lock"))
+        yield
 
 
 def _folder(module: str) -> Path:

@@ -7,7 +7,6 @@ CANDIDATES = "simmpp.workload.trace.itineraries"
 PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
 ENGINE = "simmpp.engine.compiled_engine"
-STEP = "simmpp.engine.pe.step"
 PRELOAD = "simmpp.sweeps.preload"
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, STEP, PRELOAD)
+NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD)

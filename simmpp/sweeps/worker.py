@@ -17,7 +17,9 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from simmpp.common.compiled import compiled_by_one
 from simmpp.common.errors import SimmppError
+from simmpp.common.modules import ENGINE
 from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
 from simmpp.methods.case import Case
@@ -182,7 +184,8 @@ def warm_up(engine: str) -> None:
     """Simulate the smallest machine that sends messages, once per process."""
     placement = place(_WORKLOAD, PROCESSORS, Memory(), PlacementRules(), seed=0)
     policy = PolicyParameters("concurrent")
-    simulate(_WORKLOAD, machine(processors=PROCESSORS), placement, policy, engine=engine)
+    with compiled_by_one(ENGINE):
+        simulate(_WORKLOAD, machine(processors=PROCESSORS), placement, policy, engine=engine)
 
 
 _WORKLOAD = Workload(

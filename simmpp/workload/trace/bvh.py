@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit
+from simmpp.common.compiled import kernel, njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -31,107 +31,153 @@ class Tree(NamedTuple):
     """(nodes, 8) int32: a node, or ~leaf, or EMPTY."""
 
 
-@njit
-def build(boxes: Floats) -> tuple[Floats, Ints]:
+class Memory(NamedTuple):
+    """What building a tree writes to."""
+
+    order: Ints
+    """(n,) int32: the boxes, so that each node has a segment of them."""
+    moving: Ints
+    """(n,) int32."""
+    cuts: NDArray[np.int64]
+    """(9,) int64: where the segments of a node begin, and where the last one ends."""
+    costs: Floats
+    """(8,) float64: of the segments of a node."""
+    box: Floats
+    """(6,) float64."""
+    bins: Floats
+    """(BINS, 6) float64: the boxes of each bin ..."""
+    counts: NDArray[np.int64]
+    """(BINS,) int64: ... their number ..."""
+    planes: Floats
+    """(BINS,) float64: ... and the cost of a plane before it."""
+
+
+def build(boxes: Floats) -> Tree:
     """Build the tree over ``boxes`` (n, 6) float64, low then high corner; leaf i is box i.
 
-    Returns the arrays of a :class:`Tree`. Equal boxes give equal trees.
+    Equal boxes give equal trees.
     """
     n = len(boxes)
-    order = np.arange(n, dtype=np.int32)
-    scratch = np.empty(n, np.int32)
+    memory = Memory(
+        order=np.arange(n, dtype=np.int32),
+        moving=np.empty(n, np.int32),
+        cuts=np.empty(WIDTH + 1, np.int64),
+        costs=np.empty(WIDTH),
+        box=np.empty(6),
+        bins=np.empty((BINS, 6)),
+        counts=np.empty(BINS, np.int64),
+        planes=np.empty(BINS),
+    )
     bounds = np.empty((max(n, 1), 6, WIDTH))
     bounds[:, :3], bounds[:, 3:] = np.inf, -np.inf
     children = np.full((max(n, 1), WIDTH), EMPTY, np.int32)
     spans = np.empty((max(n, 1), 2), np.int64)
     spans[0] = 0, n
-    used = 1
-    node = 0
-    while node < used:  # spans is the queue: children are numbered after their parents
-        cuts = _cut_in_eight(boxes, order, scratch, spans[node, 0], spans[node, 1])
-        for k in range(len(cuts) - 1):
-            low, high = cuts[k], cuts[k + 1]
-            bounds[node, :, k] = _union(boxes, order, low, high)
-            if high - low == 1:
-                children[node, k] = ~order[low]
-            else:
-                children[node, k] = used
-                spans[used] = low, high
-                used += 1
-        node += 1
-    return bounds[:used].copy(), children[:used].copy()
+    used = _build(boxes, memory, bounds, children, spans)
+    return Tree(bounds[:used].copy(), children[:used].copy())
 
 
 @njit
-def _cut_in_eight(
-    boxes: Floats, order: Ints, scratch: Ints, low: int, high: int
-) -> NDArray[np.int64]:
-    """Positions that cut order[low:high] into at most eight segments."""
-    cuts = np.empty(WIDTH + 1, np.int64)
+def _build(
+    boxes: Floats, memory: Memory, bounds: Floats, children: Ints, spans: NDArray[np.int64]
+) -> int:
+    """Fill the arrays of a tree; how many nodes it has."""
+    used = 1
+    node = 0
+    while node < used:  # spans is the queue: children are numbered after their parents
+        n = _cut_in_eight(boxes, memory, spans[node, 0], spans[node, 1])
+        for k in range(n):
+            low, high = memory.cuts[k], memory.cuts[k + 1]
+            _unite(boxes, memory, low, high)
+            for side in range(6):
+                bounds[node, side, k] = memory.box[side]
+            if high - low == 1:
+                children[node, k] = ~memory.order[low]
+            else:
+                children[node, k] = used
+                spans[used, 0], spans[used, 1] = low, high
+                used += 1
+        node += 1
+    return used
+
+
+@kernel
+def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
+    """Cut order[low:high] into at most eight segments; how many there are."""
+    cuts, costs = memory.cuts, memory.costs
     cuts[0], cuts[1] = low, high
-    cost = np.empty(WIDTH)
-    cost[0] = _cost(boxes, order, low, high)
+    costs[0] = _cost(boxes, memory, low, high)
     n = 1 if high > low else 0
     while 0 < n < WIDTH:
         worst = 0
         for k in range(1, n):
-            if cost[k] > cost[worst]:
+            if costs[k] > costs[worst]:
                 worst = k
         first, last = cuts[worst], cuts[worst + 1]
-        if cost[worst] < 0.0:
+        if costs[worst] < 0.0:
             break
-        middle = _split(boxes, order, scratch, first, last)
+        middle = _split(boxes, memory, first, last)
         for k in range(n, worst, -1):
             cuts[k + 1] = cuts[k]
-            cost[k] = cost[k - 1]
+            costs[k] = costs[k - 1]
         cuts[worst + 1] = middle
-        cost[worst] = _cost(boxes, order, first, middle)
-        cost[worst + 1] = _cost(boxes, order, middle, last)
+        costs[worst] = _cost(boxes, memory, first, middle)
+        costs[worst + 1] = _cost(boxes, memory, middle, last)
         n += 1
-    return cuts[: n + 1]
+    return n
 
 
-@njit
-def _cost(boxes: Floats, order: Ints, low: int, high: int) -> float:
+@kernel
+def _cost(boxes: Floats, memory: Memory, low: int, high: int) -> float:
     """Surface times number of boxes; -1 for a single one, which is never split."""
-    return -1.0 if high - low < 2 else _area(_union(boxes, order, low, high)) * (high - low)
+    if high - low < 2:
+        return -1.0
+    _unite(boxes, memory, low, high)
+    return _area(memory.box) * (high - low)
 
 
-@njit
-def _union(boxes: Floats, order: Ints, low: int, high: int) -> Floats:
-    box = boxes[order[low]].copy()
-    for i in range(low + 1, high):
-        _extend(box, boxes[order[i]])
-    return box
+@kernel
+def _unite(boxes: Floats, memory: Memory, low: int, high: int) -> None:
+    """Make memory.box the box of order[low:high]."""
+    _clear(memory.box)
+    for i in range(low, high):
+        _extend(memory.box, boxes[memory.order[i]])
 
 
-@njit
+@kernel
+def _clear(box: Floats) -> None:
+    """Turn a box inside out: what it is extended by, it becomes."""
+    for axis in range(3):
+        box[axis], box[3 + axis] = np.inf, -np.inf
+
+
+@kernel
 def _extend(box: Floats, other: Floats) -> None:
     for axis in range(3):
         box[axis] = min(box[axis], other[axis])
         box[3 + axis] = max(box[3 + axis], other[3 + axis])
 
 
-@njit
+@kernel
 def _area(box: Floats) -> float:
     """Half the surface of a box; 0 for one that is inside out."""
     x, y, z = box[3] - box[0], box[4] - box[1], box[5] - box[2]
     return 0.0 if x < 0.0 else x * y + y * z + z * x
 
 
-@njit
-def _split(boxes: Floats, order: Ints, scratch: Ints, low: int, high: int) -> int:
+@kernel
+def _split(boxes: Floats, memory: Memory, low: int, high: int) -> int:
     """Reorder order[low:high] about the cheapest plane between bins; its position."""
-    axis, start, extent = _longest_axis(boxes, order, low, high)
+    axis, start, extent = _longest_axis(boxes, memory.order, low, high)
     middle = low
     per_bin = BINS * (1.0 - 2.0**-40) / extent
     if 0.0 < per_bin < np.inf:  # centres that are one, or a subnormal number apart, have no bins
-        plane = _cheapest_plane(boxes, order, low, high, axis, start, per_bin)
-        middle = _partition(boxes, order, scratch, low, high, axis, start, per_bin, plane)
+        plane = _cheapest_plane(boxes, memory, low, high, axis, start, per_bin)
+        middle = _partition(boxes, memory, low, high, axis, start, per_bin, plane)
     return middle if low < middle < high else (low + high) // 2
 
 
-@njit
+@kernel
 def _longest_axis(boxes: Floats, order: Ints, low: int, high: int) -> tuple[int, float, float]:
     """Axis on which the boxes' centres spread most; twice its least centre, twice the spread."""
     best, start, extent = 0, 0.0, -1.0
@@ -145,40 +191,44 @@ def _longest_axis(boxes: Floats, order: Ints, low: int, high: int) -> tuple[int,
     return best, start, extent
 
 
-@njit
+@kernel
 def _bin(boxes: Floats, i: int, axis: int, start: float, per_bin: float) -> int:
     return int((boxes[i, axis] + boxes[i, 3 + axis] - start) * per_bin)
 
 
-@njit
+@kernel
 def _cheapest_plane(
-    boxes: Floats, order: Ints, low: int, high: int, axis: int, start: float, per_bin: float
+    boxes: Floats, memory: Memory, low: int, high: int, axis: int, start: float, per_bin: float
 ) -> int:
     """The first bin of the upper part, by the least sum of surface times number."""
-    count = np.zeros(BINS, np.int64)
-    box = np.empty((BINS, 6))
-    box[:, :3], box[:, 3:] = np.inf, -np.inf
-    for i in order[low:high]:
+    bins, counts, planes, below = memory.bins, memory.counts, memory.planes, memory.box
+    for k in range(BINS):
+        _clear(bins[k])
+        counts[k], planes[k] = 0, 0.0
+    for at in range(low, high):
+        i = memory.order[at]
         k = _bin(boxes, i, axis, start, per_bin)
-        count[k] += 1
-        _extend(box[k], boxes[i])
-    cost = np.zeros(BINS)
+        counts[k] += 1
+        _extend(bins[k], boxes[i])
     for sign in (1, -1):
-        below, n = np.empty(6), 0
-        below[:3], below[3:] = np.inf, -np.inf
+        _clear(below)
+        n = 0
         for step in range(BINS - 1):
             k = step if sign == 1 else BINS - 1 - step
-            _extend(below, box[k])
-            n += count[k]
-            cost[k + 1 if sign == 1 else k] += _area(below) * n
-    return int(1 + np.argmin(cost[1:]))
+            _extend(below, bins[k])
+            n += counts[k]
+            planes[k + 1 if sign == 1 else k] += _area(below) * n
+    best = 1
+    for k in range(2, BINS):
+        if planes[k] < planes[best]:
+            best = k
+    return best
 
 
-@njit
+@kernel
 def _partition(
     boxes: Floats,
-    order: Ints,
-    scratch: Ints,
+    memory: Memory,
     low: int,
     high: int,
     axis: int,
@@ -187,6 +237,7 @@ def _partition(
     plane: int,
 ) -> int:
     """Stable partition of order[low:high] by bin < plane; where the upper part begins."""
+    order, moving = memory.order, memory.moving
     middle, above = low, 0
     for position in range(low, high):
         i = order[position]
@@ -194,9 +245,10 @@ def _partition(
             order[middle] = i
             middle += 1
         else:
-            scratch[above] = i
+            moving[above] = i
             above += 1
-    order[middle:high] = scratch[:above]
+    for k in range(above):  # a slice would have numba compile how shapes that differ are told
+        order[middle + k] = moving[k]
     return middle
 
 

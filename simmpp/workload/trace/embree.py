@@ -47,26 +47,35 @@ class Intersector:
             return claims
         for start in range(0, len(origins), BATCH):
             part = slice(start, start + BATCH)
-            which, origins32, directions32 = _start_in_box(
-                self._box,
-                np.ascontiguousarray(origins[part], dtype=np.float64),
-                np.ascontiguousarray(directions[part], dtype=np.float64),
-            )
+            which, starts, ahead = _starts_in_box(self._box, origins[part], directions[part])
             if len(which):
-                first = self._scene.run(origins32, directions32, query="INTERSECT")
+                first = self._scene.run(starts, ahead, query="INTERSECT")
                 hit = (first >= 0) & (first < len(self._stands_for))
                 claims[start + which[hit]] = self._stands_for[first[hit]]
         return claims
 
 
-@njit
-def _start_in_box(
+def _starts_in_box(
     box: NDArray[np.float64], origins: NDArray[np.float64], directions: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.float32], NDArray[np.float32]]:
     """Rays that enter the scene's box, as float32, moved to where they enter it."""
     which = np.empty(len(origins), np.int64)
-    origins32 = np.empty((len(origins), 3), np.float32)
-    directions32 = np.empty((len(origins), 3), np.float32)
+    starts, ahead = np.empty((2, len(origins), 3), np.float32)
+    contiguous = np.ascontiguousarray(origins), np.ascontiguousarray(directions)
+    n = _start_in_box(box, *contiguous, which, starts, ahead)
+    return which[:n], starts[:n], ahead[:n]
+
+
+@njit
+def _start_in_box(
+    box: NDArray[np.float64],
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    which: NDArray[np.int64],
+    origins32: NDArray[np.float32],
+    directions32: NDArray[np.float32],
+) -> int:
+    """Fill the arrays of :func:`_starts_in_box`; how many rays there are."""
     n = 0
     for i in range(len(origins)):
         t = entry(box, 0, ray_of(origins, directions, i))
@@ -77,4 +86,4 @@ def _start_in_box(
                 directions32[n, axis] = directions[i, axis]
             which[n] = i
             n += 1
-    return which[:n], origins32[:n], directions32[:n]
+    return n

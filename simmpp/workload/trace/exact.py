@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit_reading
+from simmpp.common.compiled import kernel
 from simmpp.workload.trace.bvh import WIDTH
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.workload import CONE, SPHERE
@@ -41,7 +41,7 @@ class Ray(NamedTuple):
     iz: float
 
 
-@njit_reading
+@kernel
 def ray_of(origins: Floats, directions: Floats, i: int) -> Ray:
     """Ray ``i`` of arrays (n, 3) float64."""
     dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
@@ -49,14 +49,14 @@ def ray_of(origins: Floats, directions: Floats, i: int) -> Ray:
     return Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
 
 
-@njit_reading
+@kernel
 def _inverse(component: float) -> float:
     if abs(component) > 1.0 / STEEPEST:
         return 1.0 / component
     return math.copysign(STEEPEST, component)
 
 
-@njit_reading
+@kernel
 def entry(boxes: Floats, i: int, ray: Ray) -> float:
     """Where ``ray`` enters box ``i`` of (n, 6) float64: 0 from inside, infinity if it does not."""
     ax, bx = (boxes[i, 0] - ray.ox) * ray.ix, (boxes[i, 3] - ray.ox) * ray.ix
@@ -67,7 +67,7 @@ def entry(boxes: Floats, i: int, ray: Ray) -> float:
     return enter if enter <= leave else np.inf
 
 
-@njit_reading
+@kernel
 def entries(bounds: Floats, node: int, ray: Ray, found: Floats) -> None:
     """:func:`entry` of the eight boxes of a node of a tree, into ``found`` (8,) float64."""
     x, y, z = 0 if ray.ix > 0 else 3, 1 if ray.iy > 0 else 4, 2 if ray.iz > 0 else 5
@@ -86,7 +86,7 @@ def entries(bounds: Floats, node: int, ray: Ray, found: Floats) -> None:
         found[k] = enter if enter <= leave else np.inf
 
 
-@njit_reading
+@kernel
 def hit_triangle(triangle: Row, ray: Ray, t_min: float) -> float:
     """Distance to ``triangle`` (9,) float64 beyond ``t_min`` (Moeller and Trumbore 1997)."""
     e1x, e1y, e1z = triangle[3], triangle[4], triangle[5]
@@ -110,7 +110,7 @@ def hit_triangle(triangle: Row, ray: Ray, t_min: float) -> float:
     return t if t > t_min else np.inf
 
 
-@njit_reading
+@kernel
 def hit_sphere(shape: Row, ray: Ray, t_min: float) -> float:
     """Distance to a sphere; seen from the point of the ray nearest to its centre."""
     x, y, z = ray.ox - shape[0], ray.oy - shape[1], ray.oz - shape[2]
@@ -125,7 +125,7 @@ def hit_sphere(shape: Row, ray: Ray, t_min: float) -> float:
     return closest + half if closest + half > t_min else np.inf
 
 
-@njit_reading
+@kernel
 def hit_cone(shape: Row, ray: Ray, t_min: float) -> float:
     """Distance to an open cone: |w + v t|^2 = (radius + growth z)^2 with 0 <= z <= height."""
     x, y, z = ray.ox - shape[0], ray.oy - shape[1], ray.oz - shape[2]
@@ -150,7 +150,7 @@ def hit_cone(shape: Row, ray: Ray, t_min: float) -> float:
     return best
 
 
-@njit_reading
+@kernel
 def row_of(surfaces: Floats, k: int) -> Row:
     """Row ``k`` of ``surfaces`` (rows, 9) float64 as nine numbers."""
     return (
@@ -166,7 +166,7 @@ def row_of(surfaces: Floats, k: int) -> Row:
     )
 
 
-@njit_reading
+@kernel
 def hit_object(
     shapes: Shapes, i: int, ray: Ray, enter: float, bound: float, stack: Ints, found: Floats
 ) -> tuple[float, int]:
@@ -184,7 +184,7 @@ def hit_object(
     return max(t, enter), row
 
 
-@njit_reading
+@kernel
 def _hit_rows(shapes: Shapes, i: int, ray: Ray) -> tuple[float, int]:
     """Nearest of the few rows of object ``i``."""
     kind, first, after = shapes.objects[i, 0], shapes.objects[i, 1], shapes.objects[i, 2]
@@ -202,7 +202,7 @@ def _hit_rows(shapes: Shapes, i: int, ray: Ray) -> tuple[float, int]:
     return best, nearest
 
 
-@njit_reading
+@kernel
 def _hit_tree(
     shapes: Shapes, root: int, ray: Ray, bound: float, stack: Ints, found: Floats
 ) -> tuple[float, int]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit, njit_reading
+from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import SceneError
 from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.picture import Picture
@@ -22,7 +22,7 @@ from simmpp.workload.trace.camera import FAR, primary_rays
 from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.frame import Frame
 from simmpp.workload.trace.geometry import Geometry
-from simmpp.workload.trace.itineraries import work_for
+from simmpp.workload.trace.itineraries import Work, work_for
 from simmpp.workload.trace.surface import (
     Surface,
     faces,
@@ -35,7 +35,6 @@ from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-New = tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints]
 
 
 class Rays(NamedTuple):
@@ -115,19 +114,27 @@ def children(
     at the greatest depth spawn shadow rays only.
     """
     deeper = depth < rules.max_depth
-    *arrays, counts = _spawn(
-        geometry,
-        rays.origins,
-        rays.directions,
-        rays.kinds,
-        hits,
-        distances,
-        rules.lights,
-        rules.reflection and deeper,
-        rules.refraction and deeper,
-        first,
+    reflection, refraction = rules.reflection and deeper, rules.refraction and deeper
+    surfaces = hits[(rays.kinds != SHADOW) & (hits >= 0)]
+    most = len(rules.lights) * len(surfaces)
+    most += reflection * int(geometry.reflects[surfaces].sum())
+    most += refraction * int(geometry.transmits[surfaces].sum())
+    new, counts = _room(most), np.zeros(len(hits), np.int32)
+    spawning = rules.lights, reflection, refraction
+    work = work_for(geometry.shapes)
+    used = _spawn(geometry, rays, hits, distances, spawning, first, new, counts, work)
+    return new.part(0, used), counts
+
+
+def _room(n: int) -> Rays:
+    return Rays(
+        origins=np.empty((n, 3)),
+        directions=np.empty((n, 3)),
+        kinds=np.empty(n, np.uint8),
+        limits=np.empty(n),
+        sources=np.empty(n, np.int32),
+        parents=np.empty(n, np.int32),
     )
-    return Rays._make(arrays), counts
 
 
 def joined(parts: list[Rays]) -> Rays:
@@ -138,39 +145,28 @@ def joined(parts: list[Rays]) -> Rays:
 @njit
 def _spawn(
     geometry: Geometry,
-    origins: Floats,
-    directions: Floats,
-    kinds: NDArray[np.uint8],
+    rays: Rays,
     hits: Ints,
     distances: Floats,
-    lights: Floats,
-    reflection: bool,
-    refraction: bool,
+    spawning: tuple[Floats, bool, bool],
     first: int,
-) -> tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints, Ints]:
-    shapes, normals, ior = geometry.shapes, geometry.normals, geometry.ior
-    reflects, transmits = geometry.reflects, geometry.transmits
-    most = 0
-    for i in range(len(kinds)):
-        if kinds[i] != SHADOW and hits[i] >= 0:
-            most += len(lights) + reflection * reflects[hits[i]] + refraction * transmits[hits[i]]
-    new = (
-        np.empty((most, 3)),
-        np.empty((most, 3)),
-        np.empty(most, np.uint8),
-        np.empty(most),
-        np.empty(most, np.int32),
-        np.empty(most, np.int32),
-    )
-    counts = np.zeros(len(kinds), np.int32)
-    work = work_for(shapes)
+    new: Rays,
+    counts: Ints,
+    work: Work,
+) -> int:
+    """Fill ``new``, and ``counts`` (n,) of each ray's children; how many there are in all."""
+    lights, reflection, refraction = spawning
+    reflects, transmits, ior = geometry.reflects, geometry.transmits, geometry.ior
     used = 0
-    for i in range(len(kinds)):
-        if kinds[i] == SHADOW or hits[i] < 0:
+    for i in range(len(hits)):
+        if rays.kinds[i] == SHADOW or hits[i] < 0:
             continue
         hit, before = hits[i], used
-        ray = ray_of(origins, directions, i)
-        surface = surface_at(shapes, normals, hit, ray, distances[i], not transmits[hit], work)
+        ray = ray_of(rays.origins, rays.directions, i)
+        opaque = not transmits[hit]
+        surface = surface_at(
+            geometry.shapes, geometry.normals, hit, ray, distances[i], opaque, work
+        )
         if reflection and reflects[hit]:
             used = _add(
                 new, used, REFLECTED, first + i, hit, surface, reflected(ray, surface), np.inf
@@ -183,21 +179,12 @@ def _spawn(
             light = (lights[k, 0], lights[k, 1], lights[k, 2])
             used = _add_shadow(new, used, first + i, hit, surface, light)
         counts[i] = used - before
-    origins, directions, kinds, limits, sources, parents = new
-    return (
-        origins[:used],
-        directions[:used],
-        kinds[:used],
-        limits[:used],
-        sources[:used],
-        parents[:used],
-        counts,
-    )
+    return used
 
 
-@njit_reading
+@kernel
 def _add(
-    new: New,
+    new: Rays,
     used: int,
     kind: int,
     parent: int,
@@ -207,19 +194,19 @@ def _add(
     limit: float,
 ) -> int:
     """Append one ray that leaves ``surface``; the new number of rays."""
-    origins, directions, kinds, limits, sources, parents = new
+    origin, ahead = new.origins[used], new.directions[used]
     x, y, z = direction
     outwards = surface.ox * x + surface.oy * y + surface.oz * z > 0.0
-    origins[used, 0], origins[used, 1], origins[used, 2] = surface.x, surface.y, surface.z
-    directions[used, 0], directions[used, 1], directions[used, 2] = x, y, z
-    kinds[used], limits[used], parents[used] = kind, limit, parent
-    sources[used] = source if surface.flat or (surface.convex and outwards) else -1
+    origin[0], origin[1], origin[2] = surface.x, surface.y, surface.z
+    ahead[0], ahead[1], ahead[2] = x, y, z
+    new.kinds[used], new.limits[used], new.parents[used] = kind, limit, parent
+    new.sources[used] = source if surface.flat or (surface.convex and outwards) else -1
     return used + 1
 
 
-@njit_reading
+@kernel
 def _add_shadow(
-    new: New, used: int, parent: int, source: int, surface: Surface, light: Vector
+    new: Rays, used: int, parent: int, source: int, surface: Surface, light: Vector
 ) -> int:
     """Append a shadow ray, unless the surface faces away from the light."""
     x, y, z = towards(surface, light[0], light[1], light[2])

@@ -208,11 +208,11 @@ def _cone_boxes(cones: Floats) -> Floats:
 def _trees(boxes: Floats, first: Ints, counts: Ints, surfaces: Floats) -> tuple[Ints, bvh.Tree]:
     """Roots (N,) int32 of objects of many triangles, and all nodes, the objects' tree first."""
     roots = np.full(len(first), -1, dtype=np.int32)
-    trees = [bvh.Tree(*bvh.build(boxes))]
+    trees = [bvh.build(boxes)]
     used = len(trees[0].children)
     for i in np.flatnonzero(counts > FEW_TRIANGLES):
         part = surfaces[first[i] : first[i] + counts[i]]
-        tree = bvh.Tree(*bvh.build(padded(_triangle_boxes(part))))
+        tree = bvh.build(padded(_triangle_boxes(part)))
         trees.append(bvh.shifted(tree, nodes=used, leaves=int(first[i])))
         roots[i] = used
         used += len(tree.children)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit, njit_reading
+from simmpp.common.compiled import kernel, njit
 from simmpp.workload.trace.bvh import WIDTH
 from simmpp.workload.trace.exact import Ray, entries, hit_object, hit_triangle, ray_of, row_of
 from simmpp.workload.trace.geometry import Shapes
@@ -21,6 +21,10 @@ from simmpp.workload.workload import SHADOW
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Batch = tuple[Floats, Floats, NDArray[np.uint8], Floats, Ints, Ints]
+"""Origins, directions, kinds, limits, sources and claims."""
+Answers = tuple[Ints, Floats, Ints]
+"""Hits, distances and lengths of the itineraries."""
 
 SLACK = 1.0 + 1e-12
 """Boxes entered this little behind the hit still belong to the itinerary."""
@@ -42,7 +46,6 @@ class Work(NamedTuple):
     """... and where it enters their boxes."""
 
 
-@njit
 def work_for(shapes: Shapes) -> Work:
     """Memory for any search in ``shapes``: no node is pushed twice."""
     nodes, n = len(shapes.children) + 1, len(shapes.objects) + 1
@@ -56,7 +59,6 @@ def work_for(shapes: Shapes) -> Work:
     )
 
 
-@njit
 def find_itineraries(
     shapes: Shapes,
     origins: Floats,
@@ -82,11 +84,28 @@ def find_itineraries(
     hits (n,) int32, distances (n,) float64, counts (n,) int32, objects (sum of counts,) int32
     """
     n = len(kinds)
-    hits, distances = np.empty(n, np.int32), np.empty(n)
-    counts, objects = np.empty(n, np.int32), np.empty(4 * n + 16, np.int32)
-    work = work_for(shapes)
-    used = 0
-    for i in range(n):
+    rays = origins, directions, kinds, limits, sources, claims
+    hits, distances, counts = answers = np.empty(n, np.int32), np.empty(n), np.empty(n, np.int32)
+    work, parts, done = work_for(shapes), [np.empty(0, np.int32)], 0
+    while done < n:
+        objects = np.empty(4 * (n - done) + len(work.ids), np.int32)
+        done, used = _find(shapes, rays, answers, objects, work, done)
+        parts.append(objects[:used])
+    return hits, distances, counts, np.concatenate(parts)
+
+
+@njit
+def _find(
+    shapes: Shapes, rays: Batch, answers: Answers, objects: Ints, work: Work, first: int
+) -> tuple[int, int]:
+    """Answer for the rays from ``first`` on, as long as ``objects`` can hold any itinerary.
+
+    Returns the next ray and how much of ``objects`` is used.
+    """
+    origins, directions, kinds, limits, sources, claims = rays
+    hits, distances, counts = answers
+    used, i = 0, first
+    while i < len(kinds) and used + len(work.ids) <= len(objects):
         ray = ray_of(origins, directions, i)
         claimed = claims[i, 0] if claims[i, 0] != sources[i] else -1
         if kinds[i] == SHADOW:
@@ -94,22 +113,14 @@ def find_itineraries(
         else:
             hit, t, m = _nearest(shapes, ray, sources[i], claimed, claims[i, 1], work)
         hits[i], distances[i], counts[i] = hit, t, m
-        if used + m > len(objects):
-            objects = _enlarged(objects, used, 2 * (used + m))
         for k in range(m):
             objects[used + k] = work.ids[k]
         used += m
-    return hits, distances, counts, objects[:used].copy()
+        i += 1
+    return i, used
 
 
-@njit
-def _enlarged(objects: Ints, used: int, size: int) -> Ints:
-    larger = np.empty(size, np.int32)
-    larger[:used] = objects[:used]
-    return larger
-
-
-@njit_reading
+@kernel
 def _nearest(
     shapes: Shapes, ray: Ray, source: int, claimed: int, row: int, work: Work
 ) -> tuple[int, float, int]:
@@ -125,7 +136,7 @@ def _nearest(
     return hit, t, m
 
 
-@njit_reading
+@kernel
 def _first_blocker(
     shapes: Shapes, ray: Ray, light: float, source: int, work: Work
 ) -> tuple[int, float, int]:
@@ -139,7 +150,7 @@ def _first_blocker(
     return hit, t, m
 
 
-@njit_reading
+@kernel
 def _search(
     shapes: Shapes,
     ray: Ray,
@@ -183,7 +194,7 @@ def _search(
     return hit, distance, _keep(ids, enters, m, limit)
 
 
-@njit_reading
+@kernel
 def _keep(ids: Ints, enters: Floats, m: int, last: float) -> int:
     """Keep candidates entered at most at ``last``, sorted by (entry, object); their number."""
     kept = 0

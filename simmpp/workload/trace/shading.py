@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from simmpp.common.compiled import njit
+from simmpp.common.compiled import kernel, njit
 from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
-from simmpp.workload.trace.itineraries import work_for
+from simmpp.workload.trace.itineraries import Work, work_for
 from simmpp.workload.trace.replay import Traced, generations, traced
 from simmpp.workload.trace.surface import Surface, faces, normalised, reflected, surface_at, towards
 from simmpp.workload.workload import REFLECTED, SHADOW, Workload
@@ -67,12 +67,13 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
     workload, lighting = traced.workload, _lighting(traced)
     colours = np.zeros((workload.n_rays, 3))
     as_recorded, first_shadows = hits == workload.hits, _first_shadows(workload)
+    geometry, work = traced.geometry, work_for(traced.geometry.shapes)
     for start, rays in generations(traced):
         stop = start + len(rays.kinds)
         distances = workload.hit_distances[start:stop] * traced.frame.scale
         shadows = first_shadows[start:stop]
         _shade(
-            traced.geometry, lighting, rays, start, hits, as_recorded, distances, shadows, colours
+            geometry, lighting, rays, start, hits, as_recorded, distances, shadows, work, colours
         )
     _gather(colours, workload.kinds, workload.parents, hits, as_recorded, lighting.materials)
     pixels = _pixels(colours, traced.picture)
@@ -118,22 +119,25 @@ def _shade(
     as_recorded: NDArray[np.bool_],
     distances: Floats,
     shadows: Ints,
+    work: Work,
     colours: Floats,
 ) -> None:
     """What each ray of a generation sees by itself, without what it reflects or refracts.
 
     ``shadows`` (n,) int32 is the number of each ray's first shadow ray.
     """
-    work = work_for(geometry.shapes)
     for i in range(len(distances)):
         hit = hits[start + i]
         if rays.kinds[i] == SHADOW:
             continue
+        colour = colours[start + i]
         if hit < 0:
-            colours[start + i] = lighting.background
+            for c in range(3):
+                colour[c] = lighting.background[c]
             continue
         material = lighting.materials[hit]
-        colours[start + i] = AMBIENT * material[3] * material[:3]
+        for c in range(3):
+            colour[c] = AMBIENT * material[3] * material[c]
         if as_recorded[start + i]:
             ray = ray_of(rays.origins, rays.directions, i)
             opaque = not geometry.transmits[hit]
@@ -141,10 +145,10 @@ def _shade(
                 geometry.shapes, geometry.normals, hit, ray, distances[i], opaque, work
             )
             mirror = reflected(ray, surface)
-            _light(lighting, material, surface, mirror, hits, shadows[i], colours[start + i])
+            _light(lighting, material, surface, mirror, hits, shadows[i], colour)
 
 
-@njit
+@kernel
 def _light(
     lighting: Lighting,
     material: Floats,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simmpp.common.compiled import njit_reading
+from simmpp.common.compiled import kernel
 from simmpp.scene.scene import Vector
 from simmpp.workload.trace.exact import Floats, Ray, Row, hit_object, row_of
 from simmpp.workload.trace.geometry import Shapes
@@ -42,7 +42,7 @@ class Surface(NamedTuple):
     side is part of the surface of a convex solid, which lies behind each of its tangent planes."""
 
 
-@njit_reading
+@kernel
 def surface_at(
     shapes: Shapes, normals: Floats, i: int, ray: Ray, t: float, opaque: bool, work: Work
 ) -> Surface:
@@ -75,7 +75,7 @@ def surface_at(
     )  # fmt: skip
 
 
-@njit_reading
+@kernel
 def _cone_normal(shape: Row, x: float, y: float, z: float) -> Vector:
     """Away from the axis, tilted against the growth of the radius."""
     x, y, z = x - shape[0], y - shape[1], z - shape[2]
@@ -86,7 +86,7 @@ def _cone_normal(shape: Row, x: float, y: float, z: float) -> Vector:
     return x - tilt * ax, y - tilt * ay, z - tilt * az
 
 
-@njit_reading
+@kernel
 def _triangle_normal(e: Row) -> Vector:
     return (
         e[4] * e[8] - e[5] * e[7],
@@ -95,13 +95,13 @@ def _triangle_normal(e: Row) -> Vector:
     )
 
 
-@njit_reading
+@kernel
 def towards(surface: Surface, x: float, y: float, z: float) -> Vector:
     """From the surface to a light."""
     return x - surface.x, y - surface.y, z - surface.z
 
 
-@njit_reading
+@kernel
 def faces(surface: Surface, x: float, y: float, z: float) -> bool:
     """Whether the surface faces a light in that direction.
 
@@ -111,7 +111,7 @@ def faces(surface: Surface, x: float, y: float, z: float) -> bool:
     return towards_it and x * x + y * y + z * z > 0.0  # not at a light's own place
 
 
-@njit_reading
+@kernel
 def reflected(ray: Ray, surface: Surface) -> Vector:
     """Mirror direction."""
     nx, ny, nz = surface.nx, surface.ny, surface.nz
@@ -119,7 +119,7 @@ def reflected(ray: Ray, surface: Surface) -> Vector:
     return normalised(ray.dx - cosine * nx, ray.dy - cosine * ny, ray.dz - cosine * nz)
 
 
-@njit_reading
+@kernel
 def refracted(ray: Ray, surface: Surface, ior: float) -> tuple[bool, Vector]:
     """Whether the ray passes, and Snell's direction; from inside it leaves for vacuum."""
     nx, ny, nz = surface.nx, surface.ny, surface.nz
@@ -134,7 +134,7 @@ def refracted(ray: Ray, surface: Surface, ior: float) -> tuple[bool, Vector]:
     )
 
 
-@njit_reading
+@kernel
 def normalised(x: float, y: float, z: float) -> Vector:
     """The vector at length 1."""
     length = math.sqrt(x * x + y * y + z * z)

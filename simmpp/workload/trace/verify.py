@@ -17,7 +17,7 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import entry, hit_object, ray_of
 from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
-from simmpp.workload.trace.itineraries import work_for
+from simmpp.workload.trace.itineraries import Work, work_for
 from simmpp.workload.trace.replay import SpawnError, Traced, generations, traced
 from simmpp.workload.trace.shading import shade
 from simmpp.workload.workload import SHADOW, Workload
@@ -95,7 +95,7 @@ def _hits_of_tests(
 ) -> tuple[Ints, Floats]:
     workload = replayed.workload
     hits, distances = np.full(workload.n_rays, -1, np.int32), np.full(workload.n_rays, np.inf)
-    places = np.full(workload.n_rays, np.inf)
+    places, work = np.full(workload.n_rays, np.inf), work_for(replayed.geometry.shapes)
     for start, rays in generations(replayed):
         stop = start + len(rays.kinds)
         mine = np.flatnonzero((tested_rays >= start) & (tested_rays < stop))
@@ -108,6 +108,7 @@ def _hits_of_tests(
             hits[start:stop],
             distances[start:stop],
             places[start:stop],
+            work,
         )
     return hits, replayed.frame.scene_lengths(distances)
 
@@ -121,9 +122,9 @@ def _intersect_pairs(
     hits: Ints,
     distances: Floats,
     places: Floats,
+    work: Work,
 ) -> None:
     """Intersect pairs of a generation; the first hit of each ray is that of the least place."""
-    work = work_for(geometry.shapes)
     stack, found = work.inner_stack, work.inner_found
     for k in range(len(tested_rays)):
         i, o = tested_rays[k], tested_objects[k]
