@@ -27,7 +27,7 @@ from simmpp.studies.nebel98.reproduce import load_experiment
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
 from simmpp.sweeps.journal import Journal, Outcome
 from simmpp.sweeps.plan import Plan, plan_of
-from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import run_plans
 
 HERE = Path(__file__).parent
@@ -55,7 +55,7 @@ def _config(figure: str, choice: Choice, size: list[str]) -> Config:
 
 def verdicts(plans: dict[str, Plan], outcomes: dict[str, Outcome]) -> list[Verdict]:
     """The claims about what is simulated, judged on a choice's own rows."""
-    return judge(Evidence(*(Measurements(plans[name].rows(outcomes)) for name in FIGURES)))
+    return judge(Evidence(*(RowIndex(plans[name].rows(outcomes)) for name in FIGURES)))
 
 
 def row_of(choice: Choice, judged: list[Verdict]) -> Row:

@@ -23,7 +23,7 @@ from simmpp.common.files import write_csv
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.figures import NAMES
-from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, Measurements, mean
+from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, RowIndex, mean
 from simmpp.sweeps.sweep import run_sweep
 
 HERE = Path(__file__).parent
@@ -43,7 +43,7 @@ HALVES = {"x < 50 %": (0.0, 0.5), "x >= 50 %": (0.5, 1.0)}
 Row = dict[str, Any]
 
 
-def summary(measured: Measurements) -> Iterable[Row]:
+def summary(measured: RowIndex) -> Iterable[Row]:
     """Mean profits over the fractions of each half, and the share of the gain without loads."""
     for scene in SCENES:
         for half, (low, high) in HALVES.items():
@@ -58,7 +58,7 @@ def summary(measured: Measurements) -> Iterable[Row]:
                 yield row
 
 
-def draw(measured: Measurements) -> None:
+def draw(measured: RowIndex) -> None:
     """Time profit over x, a panel per scene."""
     with matplotlib.rc_context(SETTINGS):
         figure = Figure(figsize=(9.5, 7), layout="constrained")
@@ -75,7 +75,7 @@ def draw(measured: Measurements) -> None:
         save(figure, HERE / "loadinfo")
 
 
-def draw_scene(axes: Axes, measured: Measurements, scene: str) -> None:
+def draw_scene(axes: Axes, measured: RowIndex, scene: str) -> None:
     """One panel."""
     across = [100 * x for x in measured.fractions]
     for (label, name), style in zip(INFORMATION.items(), STYLES, strict=False):
@@ -94,7 +94,7 @@ def main() -> None:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/loadinfo")
     result = run_sweep(HERE / "loadinfo.yaml", out=folder)
     copyfile(folder / RESULTS, HERE / "loadinfo.csv")
-    measured = Measurements(
+    measured = RowIndex(
         {str(column): cell for column, cell in row.items()}
         for row in result.rows.fillna({"error": ""}).to_dict("records")
     )

@@ -23,7 +23,7 @@ RAY, TIE, OBJECT = -1, 0, 1
 
 
 @dataclass(frozen=True)
-class Verdict:
+class ModelVerdict:
     """What a claim's predicate says of a grid."""
 
     claim: str
@@ -76,7 +76,7 @@ def borders(times: Makespans) -> Floats:
     return found
 
 
-def claims(times: Makespans) -> tuple[Verdict, Verdict]:
+def claims(times: Makespans) -> tuple[ModelVerdict, ModelVerdict]:
     """F2a: at every nb with a change, the winner changes once over x, from ray to object dataflow.
     F2b: the x of the change does not increase with nb.
 
@@ -85,7 +85,7 @@ def claims(times: Makespans) -> tuple[Verdict, Verdict]:
     return _changes_once(times), _never_rises(times)
 
 
-def _changes_once(times: Makespans) -> Verdict:
+def _changes_once(times: Makespans) -> ModelVerdict:
     changing, wrong = [], []
     for nb, row in zip(times.processors.tolist(), winners(times), strict=True):
         decided = row[row != TIE]
@@ -96,16 +96,16 @@ def _changes_once(times: Makespans) -> Verdict:
             wrong.append(nb)
     found = f"changes at nb = {_listed(changing)}" if changing else "no change at any nb"
     found += f"; not once, from ray to object, at nb = {_listed(wrong)}" if wrong else ""
-    return Verdict("F2a", bool(changing) and not wrong, found)
+    return ModelVerdict("F2a", bool(changing) and not wrong, found)
 
 
-def _never_rises(times: Makespans) -> Verdict:
+def _never_rises(times: Makespans) -> ModelVerdict:
     at = borders(times)
     changing = np.isfinite(at)
     steps = np.diff(at[changing][np.argsort(times.processors[changing])])
     pairs = zip(times.processors[changing].tolist(), at[changing].tolist(), strict=True)
     found = ", ".join(f"x = {x:.3g} at nb = {nb}" for nb, x in pairs) or "no change at any nb"
-    return Verdict("F2b", bool(changing.sum() > 1 and (steps <= 0).all()), found)
+    return ModelVerdict("F2b", bool(changing.sum() > 1 and (steps <= 0).all()), found)
 
 
 def _listed(numbers: list[int]) -> str:

@@ -28,7 +28,7 @@ from simmpp.sweeps.journal import Outcome, Results
 from simmpp.sweeps.plan import Plan, PlannedPoint
 from simmpp.sweeps.profits import MEASURES, profits_of
 from simmpp.sweeps.refinement import (
-    FEWEST,
+    FEWEST_POINTS,
     FRACTION,
     MOST_HALVINGS,
     between,
@@ -175,7 +175,7 @@ class AdaptiveSampler:
                         yield group
 
     def _between(self, line: list[Group], key: str) -> Iterator[Group]:
-        if len(line) < FEWEST or any(group.failed for group in line):
+        if len(line) < FEWEST_POINTS or any(group.failed for group in line):
             return
         line = sorted(line, key=lambda group: value_of(group.comparison, key))
         xs = [value_of(group.comparison, key) for group in line]

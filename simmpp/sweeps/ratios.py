@@ -37,7 +37,7 @@ def mean(values: Sequence[float]) -> float:
     return fmean(values) if values else math.nan
 
 
-class Measurements:
+class RowIndex:
     """Rows of results by point; those with an error count as missing.
 
     ``numbers`` are what the caller knows points by; curves carry them.

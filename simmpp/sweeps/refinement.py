@@ -30,7 +30,7 @@ from simmpp.sweeps.grid import Comparison
 from simmpp.sweeps.intervals import half_width
 from simmpp.sweeps.stopping import CORRECTED
 
-FEWEST = 3
+FEWEST_POINTS = 3
 """Points that can show a bend."""
 MOST_HALVINGS = 4
 """How often an interval between two values that were given is divided: 15 points at most."""
@@ -53,7 +53,9 @@ def refined_keys(config: Config) -> list[str]:
     axes = axes_of(config.settings.sweep)
     keys = [name for name, axis in axes.items() if _is_refinable(name, axis)]
     if not keys:
-        problem = f"expected an axis of at least {FEWEST} numbers under sweep, such as {FRACTION}"
+        problem = (
+            f"expected an axis of at least {FEWEST_POINTS} numbers under sweep, such as {FRACTION}"
+        )
         raise misplaced(("refine",), problem, config.source.places if config.source else {})
     return keys
 
@@ -61,7 +63,7 @@ def refined_keys(config: Config) -> list[str]:
 def _is_refinable(name: str, axis: Axis) -> bool:
     values = [choice.assignments.get(name) for choice in axis]
     are_whole = all(isinstance(value, int) and not isinstance(value, bool) for value in values)
-    if len(set(map(str, values))) < FEWEST or name.split(".")[0] in UNREFINED:
+    if len(set(map(str, values))) < FEWEST_POINTS or name.split(".")[0] in UNREFINED:
         return False
     return name == FRACTION or are_whole
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SHOWN_S, SHARE = 5.0, 20
 """Seconds between two writings of the tables of a sweep that runs at least, and how many times as
 long as one writing takes."""
-Tables = dict[str, tuple[list[Row], Sequence[str]]]
+TablesByFile = dict[str, tuple[list[Row], Sequence[str]]]
 """Rows and columns by the name of their file."""
 
 
@@ -112,14 +112,16 @@ def _pool(workers: int, cluster: str | None, timeout_s: float | None) -> Pool:
     return pool_for(workers, cluster, partial(run_task, timeout_s=timeout_s, versions=versions))
 
 
-def _run(plan: Plan, results: Results, pool: Pool, folder: Path | None, watcher: Watcher) -> Tables:
+def _run(
+    plan: Plan, results: Results, pool: Pool, folder: Path | None, watcher: Watcher
+) -> TablesByFile:
     """Run what isn't finished; the tables are written even when interrupted."""
     sampler = AdaptiveSampler(plan, results)
     if folder is None:
         run_pending(sampler, results, pool, watcher)
         return tables_of(sampler.plan, results)
 
-    def write() -> Tables:
+    def write() -> TablesByFile:
         return write_tables(sampler.plan, results, folder)
 
     showing = Showing(write)
@@ -178,7 +180,7 @@ def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher
             results.add_trace(digest, time.perf_counter() - began_s)
 
 
-def tables_of(plan: Plan, results: Results) -> Tables:
+def tables_of(plan: Plan, results: Results) -> TablesByFile:
     """The tables of the points that are finished; what reads them computes no profits again."""
     rows, keys = plan.rows(results.outcomes), plan.profit_keys
     profits = profit_rows(rows, keys, plan.config.settings.tolerance)
@@ -190,7 +192,7 @@ def tables_of(plan: Plan, results: Results) -> Tables:
     }
 
 
-def write_tables(plan: Plan, results: Results, folder: Path) -> Tables:
+def write_tables(plan: Plan, results: Results, folder: Path) -> TablesByFile:
     """Write them, and what they are of."""
     tables = tables_of(plan, results)
     for name, (rows, columns) in tables.items():

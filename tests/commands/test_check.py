@@ -249,7 +249,7 @@ def test_an_update_that_is_interrupted_leaves_a_baseline_that_is_refused(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(baseline, "write_text", interrupted)
+        patch.setattr(baseline, "write_record", interrupted)
         Path("c.yaml").write_text(CONFIG.replace("12}", "11}"))
         assert check("--update").exit_code == 130
     Path("c.yaml").write_text(CONFIG)

@@ -22,7 +22,7 @@ from simmpp.studies.nebel98.reproduce import (
 from simmpp.studies.nebel98.verdict import Verdict
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.profits import profit_rows
-from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher
 
 PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
@@ -89,7 +89,7 @@ def test_equal_points_of_all_figures_are_simulated_once(done: Reproduction, out:
 
 def test_figures_show_the_rows(done: Reproduction, out: Path) -> None:
     rows = rows_of(out / "figure4.csv")
-    (panel,) = FIGURES["figure4"][1](Measurements(rows))
+    (panel,) = FIGURES["figure4"][1](RowIndex(rows))
     shown = {(each.label, x): each.points[x].mean for each in panel.curves for x in each.points}
     names = {"mountain:5": "Mountain5", "rings:1": "Ring1"}
     names |= {"tetra:5": "Tetrahedron5", "tetra:6": "Tetrahedron6"}
@@ -133,7 +133,7 @@ def test_published_configurations_are_the_packages(name: str) -> None:
 
 def test_published_claims_follow_from_the_published_rows() -> None:
     names = ("figure3", "figure4", "figure6")
-    measured = (Measurements(rows_of(PUBLISHED / f"{name}.csv")) for name in names)
+    measured = (RowIndex(rows_of(PUBLISHED / f"{name}.csv")) for name in names)
     with open(PUBLISHED / "claims.csv", encoding="utf-8", newline="") as file:
         published = [Verdict(**row) for row in csv.DictReader(file)]
     assert published[2:] == judge(Evidence(*measured))

@@ -9,13 +9,7 @@ from typing import Any
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
 from simmpp.report.page.arrangement import axes_of
-from simmpp.report.page.difference import (
-    BEYOND,
-    Difference,
-    changes_by_measure,
-    line,
-    ranked,
-)
+from simmpp.report.page.difference import BEYOND, Difference, changes_by_measure, line, ranked
 from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.profit_figures import ProfitData, profit_figures

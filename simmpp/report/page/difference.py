@@ -20,6 +20,7 @@ from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.run.point import REFERENCE
 from simmpp.run.profit import ratio
+from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.matching import extremes, matched, percent
 
@@ -32,7 +33,6 @@ COMPARED = {
 }
 """The column of each, and whether it is the reference's over it."""
 BySeed = Mapping[int, float]
-Key = tuple[Hashable, ...]
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def difference_of(before: Folder, after: Folder) -> Difference:
     return Difference(old, new, common, changes, gone, added)
 
 
-def _numbers(points: Points, further: Sequence[str]) -> dict[Key, int]:
+def _numbers(points: Points, further: Sequence[str]) -> dict[tuple[Hashable, ...], int]:
     """The number of each point by what names it."""
     names = (*PLACE, *further, "policy")
     return {tuple(row[name] for name in names): n for n, row in enumerate(points.profits)}
@@ -118,13 +118,12 @@ def _changes(old: Points, n_old: int, new: Points, n_new: int) -> list[Change]:
 def values(points: Points, number: int, measure: str) -> BySeed:
     """A measure of a point for each of its seeds."""
     column, is_profit = COMPARED[measure]
-    own = {row["seed"]: row[column] for row in points.runs[number]}
+    own, place = points.seeds[number], points.places[points.groups[number]]
     if not is_profit:
-        return own
-    place = points.places[points.groups[number]]
-    references = [n for n in place if points.profits[n]["policy"] == REFERENCE]
-    bases = {row["seed"]: row[column] for n in references for row in points.runs[n]}
-    return {seed: ratio(bases[seed], own[seed]) for seed in own if seed in bases}
+        return {seed: row[column] for seed, row in own.items()}
+    of_policy = {points.profits[n]["policy"]: points.seeds[n] for n in place}
+    both = pairs(of_policy.get(REFERENCE, {}), own)
+    return {row["seed"]: ratio(base[column], row[column]) for base, row in both}
 
 
 def _compared(before: BySeed, after: BySeed) -> tuple[list[float], str]:

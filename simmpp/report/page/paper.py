@@ -11,7 +11,7 @@ from simmpp.report.page.points import Points
 from simmpp.run.point import REFERENCE
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
-from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, Measurements
+from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, RowIndex
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""
@@ -28,13 +28,13 @@ def paper_figures(folder: Folder, points: Points) -> list[Figure]:
     }
     experiments = folder.experiments or _repeated(folder)
     return [
-        _figure(figure, Measurements(experiments[name], numbers))
+        _figure(figure, RowIndex(experiments[name], numbers))
         for figure, (name, _) in FIGURES.items()
         if name in experiments
     ]
 
 
-def _figure(name: str, measured: Measurements) -> Figure:
+def _figure(name: str, measured: RowIndex) -> Figure:
     panels = FIGURES[name][1](measured)
     title = panels[0].title if len(panels) == 1 else panels[0].title.partition(":")[0]
     note = "; ".join(filter(None, (panels[0].note, "shaded: what the paper states")))

@@ -14,6 +14,7 @@ from statistics import fmean, stdev
 from typing import NamedTuple
 
 from simmpp.common.files import Row
+from simmpp.methods.columns import METHOD
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.run.point import REFERENCE
 from simmpp.run.rows import Seeds, by_place
@@ -48,21 +49,16 @@ def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, f
 
     ``keys`` name a point, ``trace_s`` are the seconds that tracing took, by scene.
     """
-    by_method: dict[str, list[Row]] = {}
-    for row in rows:
-        by_method.setdefault(row["method"], []).append(row)
-    places = {method: by_place(of, keys) for method, of in by_method.items()}
+    methods: dict[tuple[object, ...], dict[str, dict[str, Seeds]]] = {}
+    for (*place, method), policies in by_place(rows, (*keys, METHOD)).items():
+        methods.setdefault(tuple(place), {})[str(method)] = policies
     lines: list[Row] = []
-    for place, policies in places.get(SIMULATE, {}).items():  # nothing can be judged elsewhere
-        key = dict(zip(keys, place, strict=True))
-        for policy in policies:
-            of_method = {m: at[place] for m, at in places.items() if policy in at.get(place, {})}
-            runs = Runs(
-                key,
-                policy,
-                {method: at[policy] for method, at in of_method.items()},
-                {method: at.get(REFERENCE, {}) for method, at in of_method.items()},
-            )
+    for names, of_method in methods.items():
+        key = dict(zip(keys, names, strict=True))
+        references = {method: of.get(REFERENCE, {}) for method, of in of_method.items()}
+        for policy in of_method.get(SIMULATE, {}):  # nothing else can be judged
+            of_policy = {method: of[policy] for method, of in of_method.items() if policy in of}
+            runs = Runs(key, policy, of_policy, references)
             lines += [row | {"trace_s": trace_s.get(str(key["scene"]), "")} for row in _rungs(runs)]
     return lines
 

@@ -28,7 +28,7 @@ from simmpp.sweeps.ratios import (
     RAY,
     REPLICATED,
     CurvePoint,
-    Measurements,
+    RowIndex,
     mean,
 )
 
@@ -176,7 +176,7 @@ def _widened(band: tuple[float, float]) -> tuple[float, float]:
     return band[0] * (1 - WIDENED), band[1] * (1 + WIDENED)
 
 
-def _fastest(measured: Measurements, at: At) -> tuple[float, str]:
+def _fastest(measured: RowIndex, at: At) -> tuple[float, str]:
     """T(policy)/T(replicated) of the policy with the least, and its name; nan if one is missing."""
     replicated = CurvePoint(*at, REPLICATED)
     times = {
@@ -187,7 +187,7 @@ def _fastest(measured: Measurements, at: At) -> tuple[float, str]:
     return times[policy], policy
 
 
-def _scaling(measured: Measurements, x: float) -> dict[str, dict[str, float]]:
+def _scaling(measured: RowIndex, x: float) -> dict[str, dict[str, float]]:
     return {
         f"{nb} PEs": measured.accounts(CurvePoint(MOUNTAIN5, nb, x, CONCURRENT))
         for nb in (FEW, MANY)

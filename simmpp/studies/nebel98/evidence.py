@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simmpp.studies.nebel98.verdict import Criterion
-from simmpp.sweeps.ratios import CONCURRENT, CurvePoint, Measurements, mean
+from simmpp.sweeps.ratios import CONCURRENT, CurvePoint, RowIndex, mean
 
 
 class At(NamedTuple):
@@ -32,12 +32,12 @@ Values = dict[At, float]
 class Evidence:
     """The rows of the figures that claims are about."""
 
-    figure3: Measurements
-    figure4: Measurements
-    figure6: Measurements
+    figure3: RowIndex
+    figure4: RowIndex
+    figure6: RowIndex
 
 
-def points(measured: Measurements) -> list[At]:
+def points(measured: RowIndex) -> list[At]:
     """All cases, by scene, nb and x."""
     return [
         At(scene, processors, x)
@@ -47,19 +47,19 @@ def points(measured: Measurements) -> list[At]:
     ]
 
 
-def ray_over_object(measured: Measurements) -> Values:
+def ray_over_object(measured: RowIndex) -> Values:
     """T(ray)/T(object)."""
     return {at: mean(measured.ray_over_object(*at)) for at in points(measured)}
 
 
-def profits(measured: Measurements, column: str, policy: str = CONCURRENT) -> Values:
+def profits(measured: RowIndex, column: str, policy: str = CONCURRENT) -> Values:
     """Object dataflow over a policy: the time profit (of MAKESPAN) or the message profit."""
     return {at: mean(measured.profit(column, *at, policy)) for at in points(measured)}
 
 
 def criteria(
     values: Values,
-    measured: Measurements,
+    measured: RowIndex,
     policies: Sequence[str],
     low: float = -math.inf,
     high: float = math.inf,
@@ -75,9 +75,7 @@ def criteria(
     ]
 
 
-def _accounts(
-    measured: Measurements, at: At, policies: Sequence[str]
-) -> dict[str, dict[str, float]]:
+def _accounts(measured: RowIndex, at: At, policies: Sequence[str]) -> dict[str, dict[str, float]]:
     return {policy: measured.accounts(CurvePoint(*at, policy)) for policy in policies}
 
 

@@ -24,8 +24,8 @@ from simmpp.sweeps.ratios import (
     RAY,
     REPLICATED,
     CurvePoint,
-    Measurements,
     Ratios,
+    RowIndex,
 )
 
 NAMES = {
@@ -42,7 +42,7 @@ FRACTIONS_OF_6 = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0)
 """Curves of figure 6, of all that are simulated and judged."""
 
 
-def figure3(measured: Measurements) -> list[Panel]:
+def figure3(measured: RowIndex) -> list[Panel]:
     """The reciprocal of ray dataflow's time profit on Tetrahedron5."""
     (scene,) = measured.scenes
     curves = [
@@ -56,7 +56,7 @@ def figure3(measured: Measurements) -> list[Panel]:
     return [Panel(title, ON_EACH_PE, ratio, curves, level=1, note=_note(measured))]
 
 
-def figure4(measured: Measurements) -> list[Panel]:
+def figure4(measured: RowIndex) -> list[Panel]:
     """The time profit of concurrent dataflow."""
     stated = [
         Stated(0, HALF * PERCENT, *TIME_BELOW, "the paper's range"),
@@ -65,13 +65,13 @@ def figure4(measured: Measurements) -> list[Panel]:
     return [_profits("Figure 4: time profit", measured, MAKESPAN, stated)]
 
 
-def figure5(measured: Measurements) -> list[Panel]:
+def figure5(measured: RowIndex) -> list[Panel]:
     """The message profit of concurrent dataflow, from the rows of figure 4."""
     stated = [Stated(0, HALF * PERCENT, *MESSAGES_BELOW, "the paper's range")]
     return [_profits("Figure 5: message profit", measured, MESSAGES, stated)]
 
 
-def figure6(measured: Measurements) -> list[Panel]:
+def figure6(measured: RowIndex) -> list[Panel]:
     """The acceleration of concurrent dataflow over the fewest PEs, which are 32."""
     numbers = measured.processors
     few = numbers[0]
@@ -104,7 +104,7 @@ def figure6(measured: Measurements) -> list[Panel]:
     ]
 
 
-def rings7(measured: Measurements) -> list[Panel]:
+def rings7(measured: RowIndex) -> list[Panel]:
     """The time profit of every policy on the large scene, and concurrent dataflow's messages."""
     (scene,), (nb,) = measured.scenes, measured.processors
     labels = {RAY: "ray dataflow", CONCURRENT: "concurrent dataflow", REPLICATED: "replicated"}
@@ -135,7 +135,7 @@ def rings7(measured: Measurements) -> list[Panel]:
     ]
 
 
-FIGURES: dict[str, tuple[str, Callable[[Measurements], list[Panel]]]] = {
+FIGURES: dict[str, tuple[str, Callable[[RowIndex], list[Panel]]]] = {
     "figure3": ("figure3", figure3),
     "figure4": ("figure4", figure4),
     "figure5": ("figure4", figure5),
@@ -146,7 +146,7 @@ FIGURES: dict[str, tuple[str, Callable[[Measurements], list[Panel]]]] = {
 """Each figure: the configuration whose rows it shows, and what it is made of."""
 
 
-def _profits(what: str, measured: Measurements, column: str, stated: list[Stated]) -> Panel:
+def _profits(what: str, measured: RowIndex, column: str, stated: list[Stated]) -> Panel:
     """Profits of concurrent dataflow, one curve a scene."""
     (nb,) = measured.processors
     curves = [
@@ -158,7 +158,7 @@ def _profits(what: str, measured: Measurements, column: str, stated: list[Stated
     return Panel(title, ON_EACH_PE, axis, curves, stated, level=1, note=_note(measured))
 
 
-def _note(measured: Measurements) -> str:
+def _note(measured: RowIndex) -> str:
     return f"means of {measured.seeds} seeds, and their range" if measured.seeds > 1 else "one seed"
 
 
@@ -166,9 +166,7 @@ Of = tuple[str, int, str]
 """Scene, number of PEs and policy of a curve over x."""
 
 
-def _over_x(
-    label: str, measured: Measurements, ratios_at: Callable[[float], Ratios], of: Of
-) -> Curve:
+def _over_x(label: str, measured: RowIndex, ratios_at: Callable[[float], Ratios], of: Of) -> Curve:
     scene, nb, policy = of
 
     def number_at(x: float) -> int | None:
@@ -177,16 +175,16 @@ def _over_x(
     return curve(label, measured.fractions, ratios_at, number_at, unit=PERCENT)
 
 
-def _profit_over_x(label: str, measured: Measurements, column: str, of: Of) -> Curve:
+def _profit_over_x(label: str, measured: RowIndex, column: str, of: Of) -> Curve:
     scene, nb, policy = of
     return _over_x(label, measured, lambda x: measured.profit(column, scene, nb, x, policy), of)
 
 
-def _number_of_6(measured: Measurements, x: float, nb: float) -> int | None:
+def _number_of_6(measured: RowIndex, x: float, nb: float) -> int | None:
     return measured.numbers.get(CurvePoint(MOUNTAIN5, int(nb), x, CONCURRENT))
 
 
-def _acceleration(measured: Measurements, x: float, few: int, nb: float) -> Ratios:
+def _acceleration(measured: RowIndex, x: float, few: int, nb: float) -> Ratios:
     return measured.acceleration(MOUNTAIN5, x, few, int(nb))
 
 

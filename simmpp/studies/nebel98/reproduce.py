@@ -23,7 +23,7 @@ from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS, Verdict
 from simmpp.sweeps.journal import Journal
 from simmpp.sweeps.plan import plan_of
-from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher, run_plans
 
 EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
@@ -94,7 +94,7 @@ def _report(
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
     for name, table in rows.items():
         write_csv(table, result_columns(), out / f"{name}.csv")
-    measured = {name: Measurements(table) for name, table in rows.items()}
+    measured = {name: RowIndex(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
         draw(panels(measured[name]), out / figure)
     verdicts += judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))

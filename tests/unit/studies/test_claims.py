@@ -10,7 +10,7 @@ import pytest
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART, Verdict
-from simmpp.sweeps.ratios import Measurements
+from simmpp.sweeps.ratios import RowIndex
 
 X = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 0.9, 1.0)
 SCENES = ("mountain:5", "rings:1", "tetra:5", "tetra:6")
@@ -41,8 +41,8 @@ def both_seeds(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     ]
 
 
-def figure3(ratio: Callable[[int, float], float]) -> Measurements:
-    return Measurements(
+def figure3(ratio: Callable[[int, float], float]) -> RowIndex:
+    return RowIndex(
         both_seeds(
             row("tetra:5", nb, x, policy, OBJECT_PS * factor, 1)
             for nb in (8, 16, 32, 64, 128)
@@ -57,7 +57,7 @@ def figure4(
     message: Callable[[str, float], float] = lambda scene, x: 2,
     ray: float = 2.0,
     replicated: float = 0.01,
-) -> Measurements:
+) -> RowIndex:
     rows = []
     for scene in SCENES:
         for x in X:
@@ -68,11 +68,11 @@ def figure4(
                 row(scene, 64, x, "concurrent", OBJECT_PS / time(scene, x), sent),
                 row(scene, 64, x, "replicated", OBJECT_PS * replicated, 0),
             ]
-    return Measurements(both_seeds(rows))
+    return RowIndex(both_seeds(rows))
 
 
-def figure6(gain: Callable[[float], float]) -> Measurements:
-    return Measurements(
+def figure6(gain: Callable[[float], float]) -> RowIndex:
+    return RowIndex(
         both_seeds(
             row("mountain:5", nb, x, "concurrent", OBJECT_PS / factor, 1)
             for x in X
@@ -90,9 +90,9 @@ def papers_curve(scene: str, x: float) -> float:
 
 
 def verdicts(
-    three: Measurements | None = None,
-    four: Measurements | None = None,
-    six: Measurements | None = None,
+    three: RowIndex | None = None,
+    four: RowIndex | None = None,
+    six: RowIndex | None = None,
 ) -> dict[str, Verdict]:
     evidence = Evidence(
         three or figure3(lambda nb, x: (1.2 if x >= 0.8 else 0.9) + nb / 100),
@@ -166,7 +166,7 @@ def test_the_papers_own_curves_hold() -> None:
     ],
 )
 def test_a_claim_follows_its_predicate(
-    claim: str, expected: str, rows: dict[str, Measurements]
+    claim: str, expected: str, rows: dict[str, RowIndex]
 ) -> None:
     found = verdicts(**rows)[claim]
     assert found.holds == expected, found
@@ -182,7 +182,7 @@ def test_a_failed_point_makes_nothing_hold() -> None:
     for each in rows:
         if each["processors"] == 128 and each["fraction"] == 0.9:
             each["error"] = "timeout"
-    found = verdicts(three=Measurements(rows))
+    found = verdicts(three=RowIndex(rows))
     assert found["F3a"].holds == IN_PART
     assert found["F3b"].holds == DOES_NOT  # whether ray dataflow wins there is not known
     assert found["F3c"].holds == DOES_NOT

@@ -9,7 +9,7 @@ from typing import Any
 from simmpp.plot.curves import Curve, Panel, Scale, Spread, Stated, curve
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.studies.nebel98.evidence import At, rank_correlation
-from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, CurvePoint, Measurements, mean
+from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, CurvePoint, RowIndex, mean
 
 
 def row(policy: str, seed: int, time: int, messages: int = 1, error: str = "") -> dict[str, Any]:
@@ -40,7 +40,7 @@ ROWS = [
 
 
 def test_profits_pair_seeds_that_both_have() -> None:
-    measured = Measurements(ROWS)
+    measured = RowIndex(ROWS)
     assert measured.profit(MAKESPAN, "s", 8, 0.5, "concurrent") == (2.0, 3.0)
     assert measured.profit(MESSAGES, "s", 8, 0.5, "concurrent") == (4.0, 1.0)
     assert measured.profit(MAKESPAN, "s", 8, 0.5, "ray") == ()
@@ -48,9 +48,9 @@ def test_profits_pair_seeds_that_both_have() -> None:
 
 
 def test_accounts_are_shares() -> None:
-    accounts = Measurements(ROWS).accounts(CurvePoint("s", 8, 0.5, "object"))
+    accounts = RowIndex(ROWS).accounts(CurvePoint("s", 8, 0.5, "object"))
     assert accounts == {"compute": 0.25, "communication": 0.5, "waiting": 0.25}
-    assert Measurements(ROWS).accounts(CurvePoint("s", 8, 0.5, "ray")) == {}
+    assert RowIndex(ROWS).accounts(CurvePoint("s", 8, 0.5, "ray")) == {}
 
 
 def test_curves_are_means_with_the_range_of_the_seeds() -> None:
