@@ -129,9 +129,11 @@ def _simulate(
     from simmpp.run.point import run_point
     from simmpp.sweeps.worker import warm_up
 
-    warm_up(point.config.settings.engine)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
+        loading = bars.add_task("loading the engine", total=None)
+        warm_up(point.config.settings.engine)
+        bars.remove_task(loading)
         tasks: dict[str, TaskID] = {}
 
         def progress(title: str, rays_left: int) -> None:
