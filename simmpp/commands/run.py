@@ -128,9 +128,11 @@ def _simulate(
     point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
-    warm_up(point.config.settings.engine)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
+        loading = bars.add_task("loading the engine", total=None)
+        warm_up(point.config.settings.engine)
+        bars.remove_task(loading)
         tasks: dict[str, TaskID] = {}
 
         def progress(title: str, rays_left: int) -> None:

@@ -14,6 +14,8 @@ from rich.table import Table
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
+TRACER_S, ENGINE_S = 10, 20
+"""What compiling takes on a core of 2020: ``tests/bench/bench_first_use.py`` measures it."""
 
 
 class _Results(Console):
@@ -61,13 +63,15 @@ def announce_compilation(*, simulating: bool = True) -> None:
     from simmpp.common.modules import CANDIDATES, ENGINE
     from simmpp.sweeps.compile_engine import engine_compiled_beside
 
-    missing = [module for module in (CANDIDATES, ENGINE) if not is_compiled(module)]
-    if not simulating and ENGINE in missing:
-        missing.remove(ENGINE)
-    if missing:
-        often = "once" if keeps_code() else f"each time, as {cache_folder()} can't be written"
-        notice(f"compiling for this machine, {often}: about half a minute")
-    if len(missing) > 1 and available_cores() > 1 and keeps_code():
+    times_s = {CANDIDATES: TRACER_S, ENGINE: ENGINE_S if simulating else 0}
+    missing_s = [time_s for module, time_s in times_s.items() if time_s and not is_compiled(module)]
+    if not missing_s:
+        return
+    beside = len(missing_s) > 1 and available_cores() > 1 and keeps_code()
+    often = "once" if keeps_code() else f"each time, as {cache_folder()} can't be written"
+    wait_s = max(missing_s) if beside else sum(missing_s)
+    notice(f"compiling for this machine, {often}: about {wait_s} s")
+    if beside:
         click.get_current_context().with_resource(engine_compiled_beside())
 
 

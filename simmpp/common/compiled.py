@@ -83,8 +83,11 @@ def kernel(function: Function) -> Function:
 
 def njit_reading(function: Function) -> Function:
     """:func:`njit` for functions that make no arrays: their calls count no references."""
+    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": False})
     with _kept_for(function) as kept:
-        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
+        if kept:
+            compiled.enable_caching()
+    return cast(Function, compiled)
 
 
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:

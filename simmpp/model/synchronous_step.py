@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit
+from simmpp.common.compiled import kernel, njit
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.transfer import transfer_ps
 
@@ -133,19 +133,19 @@ def ray_step(
     _test_all(world, step, moving, at, pe_of)
 
 
-@njit
+@kernel
 def _arrive(world: World, clocks: Clocks, me: int, depart_ps: int) -> None:
     """Wait for a message that has not been sent yet."""
     if world.waits:
         clocks[me] = max(clocks[me], depart_ps)
 
 
-@njit
+@kernel
 def _copy_ps(costs: NDArray[np.int64], kind: int, n_bytes: int) -> int:
     return costs[kind, 0] + transfer_ps(n_bytes, costs[kind, 1])
 
 
-@njit
+@kernel
 def _test_all(world: World, step: Step, rays: Rays, at: NDArray[np.int64], pe_of: Rays) -> None:
     """One test of each of these rays, where they are; a ray without itinerary has none."""
     for ray in rays:

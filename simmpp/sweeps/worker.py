@@ -32,7 +32,7 @@ from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
-from simmpp.workload.workload import SPHERE, Workload
+from simmpp.workload.workload import SPHERE, Workload, frozen
 
 Kind = TypeVar("Kind")
 
@@ -182,10 +182,11 @@ PROCESSORS = N_OBJECTS = 2
 @cache
 def warm_up(engine: str) -> None:
     """Simulate the smallest machine that sends messages, once per process."""
-    placement = place(_WORKLOAD, PROCESSORS, Memory(), PlacementRules(), seed=0)
+    workload = frozen(_WORKLOAD)  # as what is traced: numba has code of its own for other arrays
+    placement = place(workload, PROCESSORS, Memory(), PlacementRules(), seed=0)
     policy = PolicyParameters("concurrent")
     with compiled_by_one(ENGINE):
-        simulate(_WORKLOAD, machine(processors=PROCESSORS), placement, policy, engine=engine)
+        simulate(workload, machine(processors=PROCESSORS), placement, policy, engine=engine)
 
 
 _WORKLOAD = Workload(
