@@ -11,6 +11,7 @@ import click
 from simmpp.commands.bench import bench_command
 from simmpp.commands.check import check_command
 from simmpp.commands.compare import compare_command
+from simmpp.commands.keys import keys_command
 from simmpp.commands.machine import machine_command
 from simmpp.commands.model import model_command
 from simmpp.commands.report import report_command
@@ -80,6 +81,7 @@ main.add_command(sweep_command)
 main.add_command(check_command)
 main.add_command(bench_command)
 main.add_command(compare_command)
+main.add_command(keys_command)
 main.add_command(machine_command)
 main.add_command(model_command)
 main.add_command(report_command)

@@ -63,7 +63,7 @@ def run_command(
 ) -> None:
     """Compare dataflow policies on one scene and one machine.
 
-    CONFIG is a YAML file; its keys are listed in the README. Object dataflow is run as the
+    CONFIG is a YAML file; `simmpp keys` lists its keys. Object dataflow is run as the
     reference of the profits and the replicated scene as the ceiling, if they are not named.
     """
     from simmpp.commands.options import folder, writable

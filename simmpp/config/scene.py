@@ -18,7 +18,14 @@ SOURCES = ("spd", "nff", "mesh", "workload")
 FILES = SOURCES[1:]
 """Those that name a file."""
 
-Objects = Annotated[str | dict[str, int], parsed_by(values.objects), Expect(values.OBJECTS)]
+_CLUSTERS = {
+    "type": "object",
+    "properties": {"clusters": {"type": "integer", "minimum": 1}},
+    "required": ["clusters"],
+    "additionalProperties": False,
+}
+_OBJECTS = Expect(values.OBJECTS, {"anyOf": [{"enum": ["nodes", "components"]}, _CLUSTERS]})
+Objects = Annotated[str | dict[str, int], parsed_by(values.objects), _OBJECTS]
 
 
 class SceneSettings(Strict):
