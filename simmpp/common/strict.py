@@ -10,9 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
-from fractions import Fraction
-from functools import wraps
+from functools import cache, wraps
 from typing import Annotated, Any, Literal, TypeVar, cast, dataclass_transform, get_args, get_origin
 
 from pydantic import (
@@ -20,7 +18,6 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     GetJsonSchemaHandler,
-    PlainSerializer,
     TypeAdapter,
     ValidationError,
     ValidationInfo,
@@ -30,14 +27,11 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 from pydantic_core.core_schema import CoreSchema
 
-from simmpp.common import units
 from simmpp.common.errors import ConfigError
+from simmpp.common.places import Place, misplaced, unknown
 from simmpp.common.units import shown
 from simmpp.common.validate import whole
 from simmpp.common.yamlfile import KeyPath
-
-Place = tuple[str, int | None]
-"""Where a key was set: a file or ``--set KEY``, and the line."""
 
 T = TypeVar("T")
 
@@ -182,29 +176,6 @@ def _text(value: object) -> str:
     return value
 
 
-def _number(value: object) -> Fraction:
-    """A share that Python passes."""
-    if isinstance(value, str):
-        raise _wrong(value, "a number from 0 to 1")
-    return units.share(value)
-
-
-def quantity(
-    kind: units.Kind, passed: Callable[[Any], object]
-) -> tuple[BeforeValidator, Expect, PlainSerializer]:
-    """Marks of a quantity that users write as text, and as text it is written to files."""
-    expected = Expect(kind.takes, kind.schema, kind.unit, kind.span, kind.write)
-    return parsed_by(kind.parse, passed), expected, PlainSerializer(kind.write)
-
-
-def _up_to(most: int) -> Callable[[object], int]:
-    return lambda value: whole(value, 0, most)
-
-
-Time = Annotated[int, *quantity(units.TIME, _up_to(units.LONGEST_PS))]
-Size = Annotated[int, *quantity(units.SIZE, _up_to(units.MOST_BYTES))]
-Bandwidth = Annotated[int, *quantity(units.BANDWIDTH, _up_to(units.MOST_BYTES_PER_S))]
-Share = Annotated[Fraction, *quantity(units.SHARE, _number)]
 Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
 Text = Annotated[str, parsed_by(_text), Expect("a text of one line")]
 
@@ -235,48 +206,18 @@ def _mark(field: FieldInfo, kind: type[T]) -> T | None:
     return next((mark for mark in marks if isinstance(mark, kind)), None)
 
 
+_adapter = cache(TypeAdapter)
+
+
 def structure(cls: type[T], data: object, places: Mapping[KeyPath, Place]) -> T:
     """Make an instance of a class of settings of what a user writes.
 
     Raises ConfigError for the first mistake, with the place of its key from ``places``.
     """
     try:
-        return TypeAdapter(cls).validate_python(data, context=WRITTEN, by_alias=True, by_name=False)
+        return _adapter(cls).validate_python(data, context=WRITTEN, by_alias=True, by_name=False)
     except ValidationError as error:
         raise _explained(cls, error, places) from None
-
-
-def misplaced(
-    path: KeyPath, problem: str, places: Mapping[KeyPath, Place], *, within: bool = False
-) -> ConfigError:
-    """The error for the key at ``path``; ``problem`` follows it in the line.
-
-    With ``within`` the problem names the key itself, and what holds it is named before.
-    """
-    path = _as_written(path, places)
-    where, line = places.get(path, ("", None))
-    key = dotted(path[:-1] if within else path)
-    prefix = "" if not key or where == f"--set {key}" else f"{key}: "
-    return ConfigError(prefix + problem, where=where, line=line)
-
-
-def dotted(path: KeyPath) -> str:
-    """``("policy", 1, "batch")`` -> ``policy[1].batch``."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{_plain(part)}" for part in path)
-    return text.removeprefix(".")
-
-
-def _plain(part: str) -> str:
-    return part if part.isprintable() else repr(part)
-
-
-def _as_written(path: KeyPath, places: Mapping[KeyPath, Place]) -> KeyPath:
-    """As far as the user wrote it: short forms have neither the indices nor the last keys."""
-    written: KeyPath = ()
-    for part in path:
-        if not places or (*written, part) in places:
-            written = (*written, part)
-    return written
 
 
 UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
@@ -303,13 +244,6 @@ def _explained(cls: type, errors: ValidationError, places: Mapping[KeyPath, Plac
     elif kind.endswith("_type"):  # of a model, a dataclass or a dict
         expected = "a mapping (key: value)"
     return misplaced(path, f"value {shown(error['input'])}: expected {expected}", places)
-
-
-def unknown(key: str, known: list[str]) -> str:
-    """The problem with a key that doesn't exist: the nearest that does, or all."""
-    near = get_close_matches(key, known, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"expected one of {', '.join(known)}"
-    return f"unknown key {shown(key)}: {hint}"
 
 
 def _class_at(cls: type, path: KeyPath) -> type:

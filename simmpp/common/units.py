@@ -6,11 +6,10 @@ No float holds a quantity: text becomes a fraction, and the fraction an integer,
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simmpp.common.errors import ConfigError
 
@@ -49,9 +48,9 @@ _DEFINITIONS = [
 ]
 
 # Neither signs, operators nor long exponents: pint would evaluate them, Fraction expand them.
-_NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
-_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
-_SHARE = re.compile(rf"\s*({_NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
+NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
+_QUANTITY = re.compile(rf"\s*({NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
+_SHARE = re.compile(rf"\s*({NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
 
 
 @cache
@@ -176,11 +175,23 @@ def _with_prefix(number: int, units: list[tuple[str, int]]) -> str:
 
 
 def _exactly(number: int, units: list[tuple[str, int]]) -> str:
-    """All digits, in the largest of the units that is not larger than the number."""
     unit, size = next((u for u in units if number >= u[1]), units[-1])
-    whole, rest = divmod(number, size)
-    digits = f"{whole}.{rest:0{len(str(size)) - 1}d}".rstrip("0").rstrip(".") if rest else whole
-    return f"{digits} {unit}"
+    return f"{Decimal(number) / size:f} {unit}"
+
+
+def write_ps(time_ps: int) -> str:
+    """The text that ``picoseconds`` makes this number of; so the others, and all digits."""
+    return _exactly(time_ps, _TIMES)
+
+
+def write_bytes(size_bytes: int) -> str:
+    """64000000 -> ``"64 MB"``."""
+    return _exactly(size_bytes, _SIZES)
+
+
+def write_bytes_per_s(rate: int) -> str:
+    """340000000 -> ``"340 MB/s"``; UNLIMITED -> ``"unlimited"``."""
+    return "unlimited" if rate == UNLIMITED else write_bytes(rate) + "/s"
 
 
 def format_ps(time_ps: int) -> str:
@@ -202,68 +213,3 @@ def counted(number: int, noun: str) -> str:
     """``"1 mesh"``, ``"2 meshes"``."""
     ending = "" if number == 1 else "es" if noun.endswith("sh") else "s"
     return f"{number} {noun}{ending}"
-
-
-# --- the kinds of quantities: how users write them, how numbers are written back, their schema ---
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of quantity."""
-
-    takes: str
-    """What is expected, in words."""
-    unit: str
-    span: str
-    """The range."""
-    parse: Callable[[object], Any]
-    write: Callable[[Any], str]
-    """The text that ``parse`` makes this number of, exactly."""
-    schema: Mapping[str, Any]
-
-
-_PREFIX = "(?:[pnuµμmkMGT]|[KMGT]i|pico|nano|micro|milli|kilo|mega|giga|tera|kibi|mebi|gibi|tebi)?"
-_SECONDS, _BYTES = rf"{_PREFIX}(?:s|min|seconds?|minutes?)", rf"{_PREFIX}(?:B|bytes?)"
-
-
-def _text_of(unit: str) -> dict[str, str]:
-    return {"type": "string", "pattern": rf"^\s*{_NUMBER}\s*{unit}\s*$"}
-
-
-TIME = Kind(
-    A_TIME,
-    "ps, ns, us, ms, s or min",
-    f"0 to {format_ps(LONGEST_PS)}",
-    picoseconds,
-    lambda time_ps: _exactly(time_ps, _TIMES) if time_ps else "0 s",
-    {"anyOf": [_text_of(_SECONDS), {"const": 0}]},
-)
-SIZE = Kind(
-    A_SIZE,
-    "B, kB, MB, GB, TB, KiB, MiB, GiB or TiB",
-    f"0 to {format_bytes(MOST_BYTES)}",
-    byte_count,
-    lambda size_bytes: _exactly(size_bytes, _SIZES),
-    {"anyOf": [_text_of(_BYTES), {"const": 0}]},
-)
-BANDWIDTH = Kind(
-    A_BANDWIDTH,
-    "B/s, kB/s, MB/s, GB/s or TB/s",
-    f"{format_bytes_per_s(LEAST_BYTES_PER_S)} to {format_bytes_per_s(MOST_BYTES_PER_S)}",
-    bytes_per_second,
-    lambda rate: "unlimited" if rate == UNLIMITED else _exactly(rate, _SIZES) + "/s",
-    {"anyOf": [_text_of(f"{_BYTES}/{_SECONDS}"), {"const": "unlimited"}]},
-)
-SHARE = Kind(
-    A_SHARE,
-    "",
-    "0 to 1",
-    share,
-    str,
-    {
-        "anyOf": [
-            {"type": "number", "minimum": 0, "maximum": 1},
-            {"type": "string", "pattern": rf"^\s*{_NUMBER}\s*(?:%|/\s*[0-9]{{1,18}})?\s*$"},
-        ]
-    },
-)

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.places import Place, misplaced
+from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import KeyPath, read_yaml
 from simmpp.config.axes import Axis, axes_of

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, fields_of, inner_class, unknown
+from simmpp.common.places import Place, unknown
+from simmpp.common.strict import fields_of, inner_class
 from simmpp.common.yamlfile import KeyPath, parse_yaml
 from simmpp.config.scene import long_scene
 from simmpp.config.settings import Settings, long_policies

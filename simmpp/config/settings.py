@@ -12,6 +12,7 @@ from typing import Annotated
 from pydantic import Field, field_validator, model_validator
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.quantities import SHARE_TEXT
 from simmpp.common.strict import (
     Expect,
     Short,
@@ -23,7 +24,7 @@ from simmpp.common.strict import (
     one_of,
     parsed_by,
 )
-from simmpp.common.units import SHARE, shown
+from simmpp.common.units import shown
 from simmpp.common.validate import MOST_SEED
 from simmpp.config import values
 from simmpp.config.scene import SceneSettings, long_scene
@@ -39,7 +40,7 @@ from simmpp.workload.picture import Picture
 
 _SCENE = Short("a text such as mountain:5 or bunny.glb", {"type": "string"})
 _OPEN = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
-_SHARE = {"anyOf": [{"const": "none"}, _OPEN, SHARE.schema["anyOf"][1]]}
+_SHARE = {"anyOf": [{"const": "none"}, _OPEN, SHARE_TEXT]}
 Tolerance = Annotated[
     Fraction | None,
     parsed_by(values.tolerance),

@@ -16,8 +16,9 @@ from typing import Annotated, Any, Literal, get_origin, get_type_hints
 from pydantic import Field, create_model
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.quantities import TIME
 from simmpp.common.strict import Short, Strict, parsed_by
-from simmpp.common.units import TIME, picoseconds
+from simmpp.common.units import A_TIME, picoseconds
 from simmpp.machine.machine import Copies, CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS
 
@@ -92,7 +93,7 @@ TestConstants: Any = create_model("TestConstants", __base__=Strict, **_optional(
 _NESTED = {
     Copies: (CopiesConstants, CopiesConstants()),
     TestCost: (
-        Annotated[TestConstants, parsed_by(long_test), Short(TIME.takes, TIME.schema)],
+        Annotated[TestConstants, parsed_by(long_test), Short(A_TIME, TIME)],
         TestConstants(),
     ),
 }

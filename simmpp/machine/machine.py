@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Bandwidth, Expect, Size, Time, integer, parsed_by
+from simmpp.common.quantities import Bandwidth, Size, Time
+from simmpp.common.strict import Expect, integer, parsed_by
 from simmpp.common.units import UNLIMITED as UNLIMITED
 from simmpp.common.units import shown
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload

@@ -9,7 +9,8 @@ from importlib.resources import as_file, files
 from math import prod
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.places import Place, misplaced
+from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.validate import require_whole
 from simmpp.common.yamlfile import Document, KeyPath, read_yaml

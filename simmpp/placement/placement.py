@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from simmpp.common.strict import Share, Size, declared, integer, mistake
+from simmpp.common.quantities import Share, Size
+from simmpp.common.strict import declared, integer, mistake
 from simmpp.common.validate import MOST_COUNT
 
 # --- cutting a row of things into near-equal parts ---

@@ -9,18 +9,9 @@ from pydantic import AliasPath, Field, SerializerFunctionWrapHandler, model_seri
 from pydantic.json_schema import SkipJsonSchema
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import (
-    Expect,
-    Short,
-    Switch,
-    Text,
-    Time,
-    declared,
-    in_words,
-    integer,
-    parsed_by,
-)
-from simmpp.common.units import SHARE, TIME, picoseconds, shown
+from simmpp.common.quantities import TIME, Time
+from simmpp.common.strict import Expect, Short, Switch, Text, declared, in_words, integer, parsed_by
+from simmpp.common.units import picoseconds, share, shown
 from simmpp.common.validate import MOST_COUNT, whole
 from simmpp.policy.registry import DEFAULT_POLICY, POLICIES
 
@@ -39,7 +30,7 @@ def _name(value: object) -> str:
 def _min_load(value: object) -> Fraction | int:
     """A share of n0 / nb (Fraction) or a number of rays (int), as users write it."""
     if isinstance(value, Fraction) or (isinstance(value, str) and set("%/") & set(value)):
-        return SHARE.parse(value)
+        return share(value)
     return _load(value, _MIN_LOAD)
 
 
@@ -79,7 +70,7 @@ _RAYS = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
 _MIN_LOAD_SCHEMA = {"anyOf": [_RAYS, {"type": "string", "pattern": "[%/]"}]}
 _REFRESH_SCHEMA = {
     "type": "object",
-    "properties": {"refresh": TIME.schema},
+    "properties": {"refresh": TIME},
     "required": ["refresh"],
     "additionalProperties": False,
 }

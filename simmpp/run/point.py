@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypedDict
 
-from simmpp.common.strict import misplaced
+from simmpp.common.places import misplaced
 from simmpp.config.config import Config
 from simmpp.engine.record.log import Sink
 from simmpp.engine.result import Result

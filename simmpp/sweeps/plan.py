@@ -9,7 +9,7 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
-from simmpp.common.strict import misplaced
+from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
 from simmpp.config.config import Config, Source, described
 from simmpp.methods.columns import KEYS, METHOD, NUMBERS

@@ -21,7 +21,7 @@ from dataclasses import replace
 from fractions import Fraction
 from statistics import fmean
 
-from simmpp.common.strict import misplaced
+from simmpp.common.places import misplaced
 from simmpp.config.axes import Axis
 from simmpp.config.config import Config, changed, described
 from simmpp.sweeps.grid import Comparison
