@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import cache, wraps
+from functools import wraps
 from typing import Annotated, Any, Literal, TypeVar, cast, dataclass_transform, get_args, get_origin
 
 from pydantic import (
@@ -206,16 +206,13 @@ def _mark(field: FieldInfo, kind: type[T]) -> T | None:
     return next((mark for mark in marks if isinstance(mark, kind)), None)
 
 
-_adapter = cache(TypeAdapter)
-
-
 def structure(cls: type[T], data: object, places: Mapping[KeyPath, Place]) -> T:
     """Make an instance of a class of settings of what a user writes.
 
     Raises ConfigError for the first mistake, with the place of its key from ``places``.
     """
     try:
-        return _adapter(cls).validate_python(data, context=WRITTEN, by_alias=True, by_name=False)
+        return TypeAdapter(cls).validate_python(data, context=WRITTEN, by_alias=True, by_name=False)
     except ValidationError as error:
         raise _explained(cls, error, places) from None
 

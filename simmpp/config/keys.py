@@ -55,7 +55,7 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
         if expected is None:
             mapping = "a mapping of the keys below"
             expected = Expect(f"{short.text}, or {mapping}" if short else mapping)
-        default = "" if inner else _default(prefix, expected, field.get_default())
+        default = "" if inner else _default(f"{prefix}{key}", expected, field.get_default())
         default = "(required)" if field.is_required() else default
         of_kind = of_one_kind or (cls is CopiesConstants and inner is not None)
         meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
@@ -64,9 +64,9 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
             yield from _within(inner, f"{prefix}{key}.", of_one_kind=of_kind)
 
 
-def _default(prefix: str, expected: Expect, value: Any) -> str:
-    if value is None:
-        return "preset's" if prefix.startswith(MACHINE) else "none"
+def _default(name: str, expected: Expect, value: Any) -> str:
+    if value is None:  # the torus has as many PEs as there are processors: no preset has a shape
+        return "preset's" if name.startswith(MACHINE) and name != "machine.shape" else "none"
     if isinstance(value, Fraction):
         return f"{float(value):.0%}"
     if isinstance(value, bool):

@@ -47,7 +47,7 @@ def long_test(value: object) -> object:
 # --- models of which every key may be left out, made of the classes of constants ---
 
 
-def _optional(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
+def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
     """Fields of a model with the keys that users write: choices with their default, numbers None.
 
     ``nested`` has the model, and its default, of each class of constants that a field may hold.
@@ -63,12 +63,9 @@ def _optional(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
                 default = each.default
             else:
                 hint |= None
-            model[key_of(each.name)] = (hint, _field(default, meanings[each.name]))
+            meaning = Field(default=default, description=meanings[each.name])
+            model[key_of(each.name)] = (hint, meaning)
     return model
-
-
-def _field(default: object, meaning: str) -> Any:
-    return Field(default=default, description=meaning)
 
 
 def _meanings(cls: type) -> dict[str, str]:
@@ -83,13 +80,13 @@ def _meanings(cls: type) -> dict[str, str]:
     }
 
 
-CopyConstants: Any = create_model("CopyConstants", __base__=Strict, **_optional(CopyCost, {}))
+CopyConstants: Any = create_model("CopyConstants", __base__=Strict, **optional_fields(CopyCost, {}))
 _of_kinds: dict[str, Any] = {
-    kind: (CopyConstants, _field(CopyConstants(), meaning))
+    kind: (CopyConstants, Field(default=CopyConstants(), description=meaning))
     for kind, meaning in zip(MESSAGE_KINDS, _KINDS, strict=True)
 }
 CopiesConstants: Any = create_model("CopiesConstants", __base__=CopyConstants, **_of_kinds)
-TestConstants: Any = create_model("TestConstants", __base__=Strict, **_optional(TestCost, {}))
+TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_fields(TestCost, {}))
 _NESTED = {
     Copies: (CopiesConstants, CopiesConstants()),
     TestCost: (
@@ -97,7 +94,7 @@ _NESTED = {
         TestConstants(),
     ),
 }
-_All: Any = create_model("_All", __base__=Strict, **_optional(Machine, _NESTED))
+_All: Any = create_model("_All", __base__=Strict, **optional_fields(Machine, _NESTED))
 
 
 class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are made
