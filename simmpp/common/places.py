@@ -7,8 +7,9 @@ from difflib import get_close_matches
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
-from simmpp.common.yamlfile import KeyPath
 
+KeyPath = tuple[str | int, ...]
+"""Keys and indices from the top of a document."""
 Place = tuple[str, int | None]
 """Where a key was set: a file or ``--set KEY``, and the line."""
 

@@ -28,10 +28,9 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from pydantic_core.core_schema import CoreSchema
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import Place, misplaced, unknown
+from simmpp.common.places import KeyPath, Place, misplaced, unknown
 from simmpp.common.units import shown
 from simmpp.common.validate import whole
-from simmpp.common.yamlfile import KeyPath
 
 T = TypeVar("T")
 

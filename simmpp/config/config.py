@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import Place, misplaced
+from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.common.strict import structure
 from simmpp.common.units import shown
-from simmpp.common.yamlfile import KeyPath, read_yaml
+from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.overrides import Places, override, set_key
 from simmpp.config.scene import FILES

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import Place, unknown
+from simmpp.common.places import KeyPath, Place, unknown
 from simmpp.common.strict import fields_of, inner_class
-from simmpp.common.yamlfile import KeyPath, parse_yaml
+from simmpp.common.yamlfile import parse_yaml
 from simmpp.config.scene import long_scene
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test

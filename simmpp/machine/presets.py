@@ -9,11 +9,11 @@ from importlib.resources import as_file, files
 from math import prod
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import Place, misplaced
+from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.validate import require_whole
-from simmpp.common.yamlfile import Document, KeyPath, read_yaml
+from simmpp.common.yamlfile import Document, read_yaml
 from simmpp.machine.constants import Constants, machine_of
 from simmpp.machine.machine import MOST_PROCESSORS, Machine
 from simmpp.machine.torus import default_shape
