@@ -176,7 +176,8 @@ def _text(value: object) -> str:
 
 
 Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
-Text = Annotated[str, parsed_by(_text), Expect("a text of one line")]
+_LINE = {"type": "string", "minLength": 1}
+Text = Annotated[str, parsed_by(_text), Expect("a text of one line", _LINE)]
 
 
 def fields_of(cls: type) -> dict[str, FieldInfo]:

@@ -40,7 +40,7 @@ from simmpp.workload.picture import Picture
 
 _SCENE = Short("a text such as mountain:5 or bunny.glb", {"type": "string"})
 _OPEN = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
-_SHARE = {"anyOf": [{"const": "none"}, _OPEN, SHARE_TEXT]}
+_SHARE = {"anyOf": [{"enum": ["none", None]}, _OPEN, SHARE_TEXT]}
 Tolerance = Annotated[
     Fraction | None,
     parsed_by(values.tolerance),

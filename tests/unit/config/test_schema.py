@@ -92,6 +92,8 @@ SHORT_FORMS: list[tuple[str, object]] = [
     ("memory.fraction", "1/64"),
     ("memory.fraction", 1),
     ("tolerance", "none"),
+    ("tolerance", None),
+    ("memory.bytes", None),
     ("sweep", {"processors, machine.shape": [[8, [2, 2, 2]]], "policy": ["ray", ["object"]]}),
 ]
 
@@ -140,6 +142,7 @@ MISTAKES: list[tuple[str, object]] = [
     ("policy.load_info", "all"),
     ("policy.load_info", {"refresh": 5}),
     ("policy.label", 3),
+    ("policy.label", ""),
     ("seeds", []),
     ("seeds", [1, 1]),
     ("seeds", [2**63]),
