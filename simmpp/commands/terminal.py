@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -44,6 +44,16 @@ def table(rows: Sequence[Mapping[str, object]]) -> Table:
         shown.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
     for row in rows:
         shown.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
+    return shown
+
+
+def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Table:
+    """Rows of texts as a table; only columns after the first ``whole`` are broken into lines."""
+    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for number, name in enumerate(names):
+        shown.add_column(name, no_wrap=number < whole)
+    for row in rows:
+        shown.add_row(*row)
     return shown
 
 

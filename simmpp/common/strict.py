@@ -1,49 +1,129 @@
-"""Strict settings: pydantic models whose every mistake becomes one line, with its place.
+"""Strict settings: each is declared once, and every mistake becomes one line, with its place.
 
-Each field says in ``Expect`` what it takes: the text of its errors and of the table of keys.
+A setting is a field of a class beside what reads it: its type says what it takes, and the text
+below it what it means. Such a class is ``Strict`` (a pydantic model) or ``declared`` (a frozen
+dataclass that Python callers make as well); ``structure`` makes either of what users write.
+From the fields follow the errors, the table of keys and the JSON schema.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from difflib import get_close_matches
-from fractions import Fraction
-from typing import Annotated, Any, TypeVar, get_args
+from dataclasses import dataclass, fields
+from functools import wraps
+from typing import Annotated, Any, Literal, TypeVar, cast, dataclass_transform, get_args, get_origin
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    GetJsonSchemaHandler,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+)
+from pydantic.dataclasses import dataclass as pydantic_dataclass
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core.core_schema import CoreSchema
 
-from simmpp.common import units
 from simmpp.common.errors import ConfigError
+from simmpp.common.places import KeyPath, Place, misplaced, unknown
 from simmpp.common.units import shown
-from simmpp.common.yamlfile import KeyPath
+from simmpp.common.validate import whole
 
-Place = tuple[str, int | None]
-"""Where a key was set: a file or ``--set KEY``, and the line."""
+T = TypeVar("T")
 
-Model = TypeVar("Model", bound=BaseModel)
+_CONFIG = ConfigDict(
+    extra="forbid",
+    arbitrary_types_allowed=True,
+    use_attribute_docstrings=True,
+    # Python callers say `refresh_ps`, users `load_info: {refresh: ...}`: see ``structure``
+    validate_by_name=True,
+    validate_by_alias=False,
+)
+WRITTEN = "written"
+"""Context of what users write: quantities are text with a unit. Python passes numbers."""
 
 
 class Strict(BaseModel):
     """Settings that can't be changed and have no other keys than the named ones."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+    model_config = _CONFIG | ConfigDict(frozen=True)
 
 
-@dataclass(frozen=True)
+@dataclass_transform(frozen_default=True)
+def declared(cls: type[T]) -> type[T]:
+    """A frozen dataclass of settings; wrong arguments are a ConfigError of one line."""
+    made: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
+    init, names = made.__init__, [field.name for field in fields(made)]
+
+    @wraps(init)
+    def checked(self: T, *arguments: Any, **named: Any) -> None:
+        by_name = dict(zip(names, arguments, strict=False))  # so that errors have their names
+        try:
+            init(self, *arguments[len(names) :], **by_name, **named)
+        except ValidationError as error:
+            raise _explained(made, error, {}) from None
+
+    made.__init__ = checked
+    return cast(type[T], made)
+
+
+@dataclass(frozen=True, eq=False)
 class Expect:
-    """What a key takes, in words."""
+    """What a key takes: in words, with its unit and range, and as a JSON schema."""
 
     text: str
+    schema: Mapping[str, Any] | None = None
+    """None where that of the field's type says it."""
+    unit: str = ""
+    span: str = ""
+    """The range, in words."""
+    write: Callable[[Any], str] = str
+    """A value as a user would write it."""
+
+    @property
+    def takes(self) -> str:
+        """The text, with the range where it does not say it."""
+        return self.text if self.span in self.text else f"{self.text}, {self.span}"
+
+    def __get_pydantic_json_schema__(
+        self, inner: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Called by pydantic."""
+        return dict(self.schema) if self.schema is not None else handler(inner)
 
 
-def parsed_by(parse: Callable[[Any], object]) -> BeforeValidator:
-    """A validator from a function that raises ConfigError for a wrong value."""
+@dataclass(frozen=True, eq=False)
+class Short:
+    """A shorter way to write a mapping, or each mapping of a list."""
 
-    def validate(value: object) -> object:
+    text: str
+    schema: Mapping[str, Any]
+
+    def __get_pydantic_json_schema__(
+        self, inner: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Called by pydantic."""
+        long = handler(inner)
+        if long.get("type") != "array":
+            return {"anyOf": [dict(self.schema), long]}
+        one = {"anyOf": [dict(self.schema), long["items"]]}
+        return {"anyOf": [*one["anyOf"], {"type": "array", "minItems": 1, "items": one}]}
+
+
+def parsed_by(
+    parse: Callable[[Any], object], passed: Callable[[Any], object] | None = None
+) -> BeforeValidator:
+    """A validator from a function that raises ConfigError for a wrong value.
+
+    ``passed`` is the one for what Python passes, where users write something else.
+    """
+
+    def validate(value: object, info: ValidationInfo) -> object:
         try:
-            return parse(value)
+            return parse(value) if passed is None or info.context == WRITTEN else passed(value)
         except ConfigError as error:
             raise mistake(error.problem) from None
 
@@ -59,28 +139,28 @@ def _wrong(value: object, expected: str) -> ConfigError:
     return ConfigError(f"value {shown(value)}: expected {expected}")
 
 
-def integer(least: int, most: int) -> tuple[BeforeValidator, Expect]:
+def integer(least: int, most: int, unit: str = "") -> tuple[BeforeValidator, Expect]:
     """Marks of a whole number from ``least`` to ``most``: ``Annotated[int, *integer(1, 8)]``."""
-    expected = f"an integer from {least} to {most}"
+    schema = {"type": "integer", "minimum": least, "maximum": most}
+    expected = Expect(f"an integer from {least} to {most}", schema, unit, f"{least} to {most}")
+    return parsed_by(lambda value: whole(value, least, most)), expected
 
-    def parse(value: object) -> int:
-        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
-            raise _wrong(value, expected)
-        return value
 
-    return parsed_by(parse), Expect(expected)
+def in_words(words: tuple[str, ...]) -> str:
+    """``a, b or c``."""
+    return " or ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def one_of(*words: str) -> tuple[BeforeValidator, Expect]:
-    """Marks of one of these words."""
-    expected = " or ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else words[0]
+    """Marks of one of these words, where no Literal can name them."""
+    expected = in_words(words)
 
     def parse(value: object) -> str:
         if not isinstance(value, str) or value not in words:
             raise _wrong(value, expected)
         return value
 
-    return parsed_by(parse), Expect(expected)
+    return parsed_by(parse), Expect(expected, {"enum": list(words)})
 
 
 def _switch(value: object) -> bool:
@@ -95,106 +175,88 @@ def _text(value: object) -> str:
     return value
 
 
-Time = Annotated[int, parsed_by(units.picoseconds), Expect(units.A_TIME)]
-Size = Annotated[int, parsed_by(units.byte_count), Expect(units.A_SIZE)]
-Bandwidth = Annotated[int, parsed_by(units.bytes_per_second), Expect(units.A_BANDWIDTH)]
-Share = Annotated[Fraction, parsed_by(units.share), Expect(units.A_SHARE)]
 Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
-Text = Annotated[str, parsed_by(_text), Expect("a text of one line")]
+_LINE = {"type": "string", "minLength": 1}
+Text = Annotated[str, parsed_by(_text), Expect("a text of one line", _LINE)]
 
 
-def expectation(model: type[BaseModel], key: str) -> Expect | None:
-    """What a field of a model takes, if it says so."""
-    field = model.model_fields[key]
-    found = [m for m in field.metadata if isinstance(m, Expect)]
+def fields_of(cls: type) -> dict[str, FieldInfo]:
+    """The keys of a class of settings; fields that are written inside another key are left out."""
+    declared: dict[str, FieldInfo] = getattr(cls, "__pydantic_fields__", {})
+    return {key: field for key, field in declared.items() if field.validation_alias is None}
+
+
+def expectation(field: FieldInfo) -> Expect | None:
+    """What a field takes, if it says so."""
+    expected = _mark(field, Expect)
+    if expected is None and get_origin(field.annotation) is Literal:
+        return Expect(in_words(get_args(field.annotation)))
+    return expected
+
+
+def short_form(field: FieldInfo) -> Short | None:
+    """The shorter way to write what a field takes, if there is one."""
+    return _mark(field, Short)
+
+
+def _mark(field: FieldInfo, kind: type[T]) -> T | None:
+    marks = list(field.metadata)
     for option in get_args(field.annotation):  # of "X | None"
-        found += [m for m in getattr(option, "__metadata__", ()) if isinstance(m, Expect)]
-    return found[0] if found else None
+        marks += getattr(option, "__metadata__", ())
+    return next((mark for mark in marks if isinstance(mark, kind)), None)
 
 
-def structure(model: type[Model], data: object, places: Mapping[KeyPath, Place]) -> Model:
-    """Make a model of plain data.
+def structure(cls: type[T], data: object, places: Mapping[KeyPath, Place]) -> T:
+    """Make an instance of a class of settings of what a user writes.
 
     Raises ConfigError for the first mistake, with the place of its key from ``places``.
     """
     try:
-        return model.model_validate(data)
+        return TypeAdapter(cls).validate_python(data, context=WRITTEN, by_alias=True, by_name=False)
     except ValidationError as error:
-        found = error.errors(include_url=False)
+        raise _explained(cls, error, places) from None
+
+
+UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+"""Pydantic's errors for a key that isn't one: of its models, and of its dataclasses."""
+
+
+def _explained(cls: type, errors: ValidationError, places: Mapping[KeyPath, Place]) -> ConfigError:
+    """The one line for the first of pydantic's errors."""
     # an unknown key is often the cause of a missing one
-    first = min(found, key=lambda each: each["type"] != "extra_forbidden")
-    raise _explained(model, first, places)
-
-
-def misplaced(
-    path: KeyPath, problem: str, places: Mapping[KeyPath, Place], *, within: bool = False
-) -> ConfigError:
-    """The error for the key at ``path``; ``problem`` follows it in the line.
-
-    With ``within`` the problem names the key itself, and what holds it is named before.
-    """
-    path = _as_written(path, places)
-    where, line = places.get(path, ("", None))
-    key = dotted(path[:-1] if within else path)
-    prefix = "" if not key or where == f"--set {key}" else f"{key}: "
-    return ConfigError(prefix + problem, where=where, line=line)
-
-
-def dotted(path: KeyPath) -> str:
-    """``("policy", 1, "batch")`` -> ``policy[1].batch``."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{_plain(part)}" for part in path)
-    return text.removeprefix(".")
-
-
-def _plain(part: str) -> str:
-    return part if part.isprintable() else repr(part)
-
-
-def _as_written(path: KeyPath, places: Mapping[KeyPath, Place]) -> KeyPath:
-    """As far as the user wrote it: short forms have neither the indices nor the last keys."""
-    written: KeyPath = ()
-    for part in path:
-        if not places or (*written, part) in places:
-            written = (*written, part)
-    return written
-
-
-def _explained(
-    model: type[BaseModel], error: ErrorDetails, places: Mapping[KeyPath, Place]
-) -> ConfigError:
-    """The one line for one of pydantic's errors."""
+    error: ErrorDetails = min(
+        errors.errors(include_url=False), key=lambda each: each["type"] not in UNKNOWN
+    )
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "simmpp":
         return misplaced(path, error["ctx"]["problem"], places)
     if kind == "missing":
         return misplaced(path[:-1], f"missing key {path[-1]!r}", places)
-    if kind == "extra_forbidden":
-        known = sorted(_model_at(model, path[:-1]).model_fields)
+    if kind in UNKNOWN:
+        known = sorted(fields_of(_class_at(cls, path[:-1])))
         return misplaced(path, unknown(str(path[-1]), known), places, within=True)
-    expected = "a mapping (key: value)" if "model" in kind or "dict" in kind else error["msg"]
+    expected = error["msg"]
+    if kind == "literal_error":
+        expected = error["ctx"]["expected"].replace("'", "")
+    elif kind.endswith("_type"):  # of a model, a dataclass or a dict
+        expected = "a mapping (key: value)"
     return misplaced(path, f"value {shown(error['input'])}: expected {expected}", places)
 
 
-def unknown(key: str, known: list[str]) -> str:
-    """The problem with a key that doesn't exist: the nearest that does, or all."""
-    near = get_close_matches(key, known, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"expected one of {', '.join(known)}"
-    return f"unknown key {shown(key)}: {hint}"
-
-
-def _model_at(model: type[BaseModel], path: KeyPath) -> type[BaseModel]:
+def _class_at(cls: type, path: KeyPath) -> type:
     for part in path:
         if isinstance(part, str):
-            model = submodel(model, part) or model
-    return model
+            cls = inner_class(cls, part) or cls
+    return cls
 
 
-def submodel(model: type[BaseModel], key: str) -> type[BaseModel] | None:
-    """The model that a field holds, alone, optional or in a tuple."""
-    pending: list[Any] = [model.model_fields[key].annotation] if key in model.model_fields else []
+def inner_class(cls: type, key: str) -> type | None:
+    """The class of settings that a field holds, alone, optional or in a tuple."""
+    known = fields_of(cls)
+    pending: list[Any] = [known[key].annotation] if key in known else []
     while pending:
         option = pending.pop()
-        if isinstance(option, type) and issubclass(option, BaseModel):
+        if isinstance(option, type) and hasattr(option, "__pydantic_fields__"):
             return option
         pending += get_args(option)
     return None

@@ -6,6 +6,7 @@ No float holds a quantity: text becomes a fraction, and the fraction an integer,
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
@@ -47,9 +48,9 @@ _DEFINITIONS = [
 ]
 
 # Neither signs, operators nor long exponents: pint would evaluate them, Fraction expand them.
-_NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
-_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
-_SHARE = re.compile(rf"\s*({_NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
+NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
+_QUANTITY = re.compile(rf"\s*({NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
+_SHARE = re.compile(rf"\s*({NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
 
 
 @cache
@@ -163,22 +164,44 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+_TIMES = [("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1)]
+_SIZES = [("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1)]
+
+
 def _with_prefix(number: int, units: list[tuple[str, int]]) -> str:
     unit, size = next((u for u in units if number >= u[1]), units[-1])
     digits = f"{number / size:.6g}"
     return f"{digits} {unit}"
 
 
+def _exactly(number: int, units: list[tuple[str, int]]) -> str:
+    unit, size = next((u for u in units if number >= u[1]), units[-1])
+    return f"{Decimal(number) / size:f} {unit}"
+
+
+def write_ps(time_ps: int) -> str:
+    """The text that ``picoseconds`` makes this number of; so the others, and all digits."""
+    return _exactly(time_ps, _TIMES)
+
+
+def write_bytes(size_bytes: int) -> str:
+    """64000000 -> ``"64 MB"``."""
+    return _exactly(size_bytes, _SIZES)
+
+
+def write_bytes_per_s(rate: int) -> str:
+    """340000000 -> ``"340 MB/s"``; UNLIMITED -> ``"unlimited"``."""
+    return "unlimited" if rate == UNLIMITED else write_bytes(rate) + "/s"
+
+
 def format_ps(time_ps: int) -> str:
     """12000000 -> ``"12 us"``: for people, up to six digits."""
-    units = [("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1)]
-    return _with_prefix(time_ps, units) if time_ps else "0 s"
+    return _with_prefix(time_ps, _TIMES) if time_ps else "0 s"
 
 
 def format_bytes(size_bytes: int) -> str:
     """64000000 -> ``"64 MB"``: for people, up to six digits."""
-    units = [("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1)]
-    return _with_prefix(size_bytes, units)
+    return _with_prefix(size_bytes, _SIZES)
 
 
 def format_bytes_per_s(rate: int) -> str:

@@ -31,8 +31,7 @@ from ruamel.yaml.events import (
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import refuse_special
-
-KeyPath = tuple[str | int, ...]
+from simmpp.common.places import KeyPath
 
 MOST_CHARACTERS = 1_000_000
 DEEPEST = 20

@@ -6,21 +6,22 @@ import copy
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.places import KeyPath, Place, misplaced
+from simmpp.common.strict import structure
 from simmpp.common.units import shown
-from simmpp.common.yamlfile import KeyPath, read_yaml
+from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.overrides import Places, override, set_key
-from simmpp.config.settings import PolicySettings, Settings
+from simmpp.config.settings import Settings
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine, torus_shape
-from simmpp.placement.placement import Memory, Owners, Pixels, PlacementRules, Residents
-from simmpp.policy.parameters import LoadInfo, PolicyParameters
+from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.exchange.columns import is_workload
-from simmpp.workload.picture import Picture, Samples
+from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
 from simmpp.workload.sources import FILES
 
@@ -60,17 +61,19 @@ class Config:
         return self.settings.scene.within(self.folder).source
 
     @property
+    def axes(self) -> dict[str, Axis]:
+        """The axes of the sweep, by their names."""
+        return axes_of(self.settings.sweep)
+
+    @property
+    def places(self) -> Places:
+        """Where each key was set, as far as that is known."""
+        return self.source.places if self.source else {}
+
+    @property
     def picture(self) -> Picture:
         """What is traced."""
-        chosen = self.settings.picture
-        return Picture(
-            resolution=chosen.resolution,
-            samples=cast(Samples, chosen.samples),
-            max_depth=chosen.max_depth,
-            shadows=chosen.shadows,
-            reflection=chosen.reflection,
-            refraction=chosen.refraction,
-        )
+        return self.settings.picture
 
     def machine_for(self, processors: int) -> Machine:
         """The machine with that many PEs.
@@ -82,38 +85,17 @@ class Config:
     @property
     def memory(self) -> Memory:
         """Memory of one PE."""
-        chosen = self.settings.memory
-        return Memory(
-            fraction=chosen.fraction,
-            bytes=chosen.bytes,
-            residents=cast(Residents, chosen.residents),
-            transient=chosen.transient,
-        )
+        return self.settings.memory
 
     @property
     def placement_rules(self) -> PlacementRules:
         """How objects and pixels are dealt."""
-        chosen = self.settings.placement
-        return PlacementRules(cast(Owners, chosen.owners), cast(Pixels, chosen.pixels))
+        return self.settings.placement
 
     @property
     def policies(self) -> tuple[PolicyParameters, ...]:
         """The policies named, in their order."""
-        return tuple(map(_parameters, self.settings.policy))
-
-
-def _parameters(chosen: PolicySettings) -> PolicyParameters:
-    info = chosen.load_info
-    return PolicyParameters(
-        name=chosen.name,
-        label=chosen.label or "",
-        min_load=chosen.min_load,
-        batch=chosen.batch,
-        ask_at_least=chosen.ask_at_least,
-        load_info=cast(LoadInfo, info if isinstance(info, str) else "piggyback"),
-        refresh_ps=None if isinstance(info, str) else info["refresh"],
-        merge_requests=chosen.merge_requests,
-    )
+        return self.settings.policy
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
@@ -165,7 +147,7 @@ def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
     """The configuration, once it and all values that are swept are found right."""
     settings = structure(Settings, data, places)
     config = Config(settings, _scene_folder(places, folder), Source(data, places, folder))
-    axes = axes_of(settings.sweep)
+    axes = config.axes
     first = dict.fromkeys(axes, 0)
     point_at(config, axes, first)
     for name, axis in axes.items():
@@ -185,12 +167,10 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
         for key, value in axes[name][n].assignments.items()
     ]
     point = changed(config, sorted(assignments, key=lambda each: each[0].count(".")))
-    settings, source = point.settings, point.source
     try:
-        torus_shape(settings.processors, settings.machine.shape)
+        torus_shape(point.processors, point.settings.machine.shape)
     except ConfigError as error:
-        places = source.places if source else {}
-        raise misplaced(("machine", "shape"), error.problem, places) from None
+        raise misplaced(("machine", "shape"), error.problem, point.places) from None
     return point
 
 
@@ -222,7 +202,7 @@ def _scene_folder(places: Places, folder: Path) -> Path:
 
 
 def described(config: Config) -> dict[str, Any]:
-    """The configuration with its defaults, as JSON can hold it; shares as text, times in ps."""
+    """The configuration with its defaults, as JSON can hold it and as a user could write it."""
     plain: dict[str, Any] = _plain(config.settings.model_dump(exclude_none=True))
     return plain
 

@@ -1,4 +1,4 @@
-"""The table of configuration keys, as Markdown, made from the settings themselves.
+"""The keys of a configuration, as a list and as a table in Markdown, made from the settings.
 
 ``python -m simmpp.config.keys`` prints it; ``python -m simmpp.config.keys configs/README.md`` puts
 it between the markers of a file.
@@ -8,56 +8,97 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
-
-from simmpp.common.strict import expectation, submodel
+from simmpp.common.errors import ConfigError
+from simmpp.common.strict import Expect, expectation, fields_of, inner_class, short_form
+from simmpp.common.units import shown
+from simmpp.config.overrides import key_path
 from simmpp.config.settings import Settings
 from simmpp.machine.constants import CopiesConstants
 
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
-HEADER = "| key | default | takes | meaning |\n|---|---|---|---|\n"
-FROM_PRESET = "preset's"
+HEADER = "| key | default | takes | unit | meaning |\n|---|---|---|---|---|\n"
+MACHINE = "machine."
+"""What the keys of its constants begin with."""
 
 
-def key_table() -> str:
-    """A Markdown table with one line per key: default, range and unit, meaning."""
-    return HEADER + "".join(f"| {' | '.join(line)} |\n" for line in _lines(Settings, ""))
+@dataclass(frozen=True)
+class Key:
+    """One key: what it takes, defaults to and means."""
+
+    name: str
+    """With dots, as in ``--set``."""
+    default: str
+    expect: Expect
+    meaning: str
+    pointer: str
+    """Where the JSON schema of a configuration describes it."""
+    of_one_kind: bool
+    """It says for one kind of message what another key says for all."""
 
 
-def _lines(model: type[BaseModel], prefix: str) -> Iterator[tuple[str, str, str, str]]:
-    for key, field in model.model_fields.items():
-        inner = submodel(model, key)
-        if model is CopiesConstants and inner:
-            continue  # the kinds of messages take what pack and unpack take
-        expected = expectation(model, key)
-        takes = expected.text if expected else "a mapping of the keys below"
-        default = "" if inner else _default(prefix, field.get_default())
-        if field.is_required():
-            default = "(required)"
-        meaning = (field.description or "") + _more(model, key)
-        yield f"`{prefix}{key}`", default, takes, meaning
+@cache
+def keys() -> dict[str, Key]:
+    """All keys by name, those of a mapping below it."""
+    return {key.name: key for key in _within(Settings, "", of_one_kind=False)}
+
+
+def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
+    holder = "#" if cls is Settings else f"#/$defs/{cls.__name__}"
+    for key, field in fields_of(cls).items():
+        inner, expected, short = inner_class(cls, key), expectation(field), short_form(field)
+        if expected is None:
+            mapping = "a mapping of the keys below"
+            expected = Expect(f"{short.text}, or {mapping}" if short else mapping)
+        default = "" if inner else _default(f"{prefix}{key}", expected, field.get_default())
+        default = "(required)" if field.is_required() else default
+        of_kind = of_one_kind or (cls is CopiesConstants and inner is not None)
+        meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
+        yield Key(f"{prefix}{key}", default, expected, meaning, pointer, of_kind)
         if inner:
-            yield from _lines(inner, f"{prefix}{key}.")
+            yield from _within(inner, f"{prefix}{key}.", of_one_kind=of_kind)
 
 
-def _more(model: type[BaseModel], key: str) -> str:
-    if submodel(model, key) is CopiesConstants:
-        return "; `.request`, `.object`, `.rays`, `.load` inside take both keys for one kind"
-    return ""
-
-
-def _default(prefix: str, value: Any) -> str:
-    if value is None:
-        return FROM_PRESET if prefix.startswith("machine.") else "none"
+def _default(name: str, expected: Expect, value: Any) -> str:
+    if value is None:  # the torus has as many PEs as there are processors: no preset has a shape
+        return "preset's" if name.startswith(MACHINE) and name != "machine.shape" else "none"
     if isinstance(value, Fraction):
         return f"{float(value):.0%}"
     if isinstance(value, bool):
         return str(value).lower()
-    return str(list(value) if isinstance(value, tuple) else value)
+    return str(list(value)) if isinstance(value, tuple) else expected.write(value)
+
+
+def find_keys(name: str) -> list[Key]:
+    """A key, and those below it.
+
+    Raises ConfigError for a name that is none, with the nearest.
+    """
+    if name not in keys():
+        for key in keys():
+            if key.endswith(f".{name}"):
+                raise ConfigError(f"unknown key {shown(name)}: did you mean {key!r}?")
+        name = key_path(name)[0]  # of `sweep`, whose keys are others'
+    return [key for key in keys().values() if f"{key.name}.".startswith(f"{name}.")]
+
+
+def listed_keys() -> list[Key]:
+    """All but those of single kinds of messages, which take what ``pack`` and ``unpack`` take."""
+    return [key for key in keys().values() if not key.of_one_kind]
+
+
+def key_table() -> str:
+    """A Markdown table with one line per key."""
+    lines = (
+        f"| `{key.name}` | {key.default} | {key.expect.takes} | {key.expect.unit} | {key.meaning} |"
+        for key in listed_keys()
+    )
+    return HEADER + "".join(f"{line}\n" for line in lines)
 
 
 def with_table(text: str) -> str:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, submodel, unknown
-from simmpp.common.yamlfile import KeyPath, parse_yaml
+from simmpp.common.places import KeyPath, Place, unknown
+from simmpp.common.strict import fields_of, inner_class
+from simmpp.common.yamlfile import parse_yaml
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test
 from simmpp.policy.registry import DEFAULT_POLICY
@@ -90,11 +91,11 @@ def key_path(key: str, place: Place = ("", None)) -> tuple[str, ...]:
     parts = tuple(key.split("."))
     model: Any = Settings
     for depth, part in enumerate(parts):
-        known = sorted(model.model_fields) if model else []
+        known = sorted(fields_of(model)) if model else []
         if part not in known:
             within = ".".join(parts[:depth])
             problem = unknown(part, known) if known else f"{within!r} has no keys of its own"
             prefix = f"{within}: " if within and known else ""
             raise ConfigError(prefix + problem, where=place[0], line=place[1])
-        model = submodel(model, part)
+        model = inner_class(model, part)
     return parts

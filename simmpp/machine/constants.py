@@ -1,69 +1,36 @@
-"""The constants of a machine as users write them: the keys of presets and of their overrides."""
+"""The constants of a machine as users write them: the keys of presets and of their overrides.
+
+All follow from the fields of ``Machine``, where each is declared; here any number may be given.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+import ast
+import inspect
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import cache
+from itertools import pairwise
+from typing import Annotated, Any, Literal, get_origin, get_type_hints
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Bandwidth, Expect, Size, Strict, Time, integer, one_of, parsed_by
-from simmpp.common.units import picoseconds, shown
+from simmpp.common.quantities import TIME
+from simmpp.common.strict import Short, Strict, parsed_by
+from simmpp.common.units import A_TIME, picoseconds
+from simmpp.machine.machine import Copies, CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.machine.torus import CONTENTIONS, NO_CONTENTION
 
-MOST_PROCESSORS = 65536
-"""PEs of the largest torus of the presets: Blue Gene/L."""
-
-
-def _shape(value: object) -> tuple[int, ...]:
-    whole = isinstance(value, list | tuple) and all(
-        isinstance(n, int) and not isinstance(n, bool) and 1 <= n <= MOST_PROCESSORS for n in value
-    )
-    if not whole or not isinstance(value, list | tuple) or len(value) != 3:
-        raise ConfigError(f"value {shown(value)}: expected {_SHAPE}")
-    return tuple(value)
+OTHERS = ("name", "sources")
+"""Fields of a Machine that no user sets."""
+_KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
+"""In the order of MESSAGE_KINDS."""
 
 
-_SHAPE = "three positive integers, such as [4, 4, 4]"
-Shape = Annotated[tuple[int, int, int], parsed_by(_shape), Expect(_SHAPE)]
-
-
-Quantum = Annotated[int, *integer(1, 2**31 - 1)]
-
-
-class CopyConstants(Strict):
-    """Cost of packing or unpacking one message: fixed + payload / bandwidth."""
-
-    fixed: Time | None = Field(default=None, description="part that does not depend on the size")
-    bandwidth: Bandwidth | None = Field(default=None, description="payload bytes copied per time")
-
-
-class CopiesConstants(CopyConstants):
-    """Copy costs of all kinds of messages, and of single kinds where they differ."""
-
-    request: CopyConstants = Field(default=CopyConstants(), description="a request for an object")
-    object: CopyConstants = Field(default=CopyConstants(), description="an object")
-    rays: CopyConstants = Field(default=CopyConstants(), description="a batch of rays")
-    load: CopyConstants = Field(default=CopyConstants(), description="the sender's load alone")
-
-
-class TestConstants(Strict):
-    """Cost of one ray-object intersection by kind of primitive."""
-
-    __test__ = False  # not a test class, whatever pytest thinks of the name
-
-    sphere: Time | None = Field(default=None, description="a test against a sphere")
-    cone: Time | None = Field(default=None, description="a test against a cone or cylinder")
-    polygon: Time | None = Field(
-        default=None, description="a test against a polygon's first triangle"
-    )
-    mesh: Time | None = Field(
-        default=None, description="a test against a mesh part's first triangle"
-    )
-    per_triangle: Time | None = Field(
-        default=None, description="for every triangle beyond the first"
-    )
+def key_of(field: str) -> str:
+    """``send_startup_ps`` -> ``send_startup``: users write the unit with the value."""
+    return field.removesuffix("_ps").replace("bytes_per_s", "bandwidth")
 
 
 def long_test(value: object) -> object:
@@ -77,71 +44,100 @@ def long_test(value: object) -> object:
     return dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value) | {"per_triangle": 0}
 
 
-class Constants(Strict):
-    """Any number of a machine's constants; what is None is left to the preset."""
+# --- models of which every key may be left out, made of the classes of constants ---
 
-    shape: Shape | None = Field(
-        default=None, description="PEs along x, y, z of the torus; the most cubic when not given"
-    )
-    send_startup: Time | None = Field(default=None, description="sender's cost of any message")
-    receive_startup: Time | None = Field(default=None, description="receiver's cost of any message")
-    probe: Time | None = Field(default=None, description="looking into an empty inbox")
-    pack: CopiesConstants = Field(
-        default=CopiesConstants(), description="sender's copy of the payload"
-    )
-    unpack: CopiesConstants = Field(
-        default=CopiesConstants(), description="receiver's copy of the payload"
-    )
-    header_bytes: Size | None = Field(default=None, description="header of every message")
-    request_bytes: Size | None = Field(default=None, description="payload of a request")
-    ray_bytes: Size | None = Field(default=None, description="one ray on the wire")
-    latency: Time | None = Field(default=None, description="of the network, whatever the distance")
-    hop_latency: Time | None = Field(default=None, description="for each link a message crosses")
-    link_bandwidth: Bandwidth | None = Field(default=None, description="of one link, one way")
-    injection_bandwidth: Bandwidth | None = Field(
-        default=None, description="between a PE and its router"
-    )
-    contention: Annotated[str, *one_of(*CONTENTIONS)] = Field(
-        default=NO_CONTENTION,
-        description="what messages wait for: nothing, or links and ports that serve one at a time",
-    )
-    test: Annotated[TestConstants, parsed_by(long_test)] = Field(
-        default=TestConstants(),
-        description="one ray-object intersection: one time, or by kind of primitive",
-    )
-    ray: Time | None = Field(default=None, description="set-up and shading of one ray")
-    quantum: Quantum | None = Field(
-        default=None, description="tests computed at most between two looks into the inbox"
-    )
+
+def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
+    """Fields of a model with the keys that users write: choices with their default, numbers None.
+
+    ``nested`` has the model, and its default, of each class of constants that a field may hold.
+    """
+    hints, meanings = get_type_hints(cls, include_extras=True), _meanings(cls)
+    model: dict[str, Any] = {}
+    for each in fields(cls):
+        if each.name not in OTHERS:
+            hint, default = hints[each.name], None
+            if hint in nested:
+                hint, default = nested[hint]
+            elif get_origin(hint) is Literal:
+                default = each.default
+            else:
+                hint |= None
+            meaning = Field(default=default, description=meanings[each.name])
+            model[key_of(each.name)] = (hint, meaning)
+    return model
+
+
+def _meanings(cls: type) -> dict[str, str]:
+    """The text below each field of a class."""
+    tree = ast.parse(inspect.getsource(cls)).body[0]
+    assert isinstance(tree, ast.ClassDef)
+    return {
+        field.target.id: " ".join(str(text.value.value).split())
+        for field, text in pairwise(tree.body)
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+        if isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
+    }
+
+
+CopyConstants: Any = create_model("CopyConstants", __base__=Strict, **optional_fields(CopyCost, {}))
+_of_kinds: dict[str, Any] = {
+    kind: (CopyConstants, Field(default=CopyConstants(), description=meaning))
+    for kind, meaning in zip(MESSAGE_KINDS, _KINDS, strict=True)
+}
+CopiesConstants: Any = create_model("CopiesConstants", __base__=CopyConstants, **_of_kinds)
+TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_fields(TestCost, {}))
+_NESTED = {
+    Copies: (CopiesConstants, CopiesConstants()),
+    TestCost: (
+        Annotated[TestConstants, parsed_by(long_test), Short(A_TIME, TIME)],
+        TestConstants(),
+    ),
+}
+_All: Any = create_model("_All", __base__=Strict, **optional_fields(Machine, _NESTED))
+
+
+class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are made
+    """Any number of a machine's constants; what is None is left to the preset."""
 
     def flat(self) -> dict[str, int]:
         """The constants that are given, by dotted key (``pack.rays.bandwidth``): the numbers.
 
         What is given for all kinds of messages appears under each kind.
         """
-        return _flat(self, "")
+        given = _numbers(self, "")
+        for key, value in self:
+            if isinstance(value, CopiesConstants):
+                for kind in MESSAGE_KINDS:
+                    given |= _numbers(value, f"{key}.{kind}.")
+                    given |= _numbers(getattr(value, kind), f"{key}.{kind}.")
+            elif isinstance(value, Strict):
+                given |= _numbers(value, f"{key}.")
+        return given
 
 
-def _flat(model: Strict, prefix: str) -> dict[str, int]:
-    if isinstance(model, CopiesConstants):
-        return _flat_copies(model, prefix)
-    given: dict[str, int] = {}
-    for key in type(model).model_fields:
-        value = getattr(model, key)
-        if isinstance(value, Strict):
-            given |= _flat(value, f"{prefix}{key}.")
-        elif isinstance(value, int):
-            given[prefix + key] = value
-    return given
+def _numbers(model: Strict, prefix: str) -> dict[str, int]:
+    return {prefix + key: value for key, value in model if isinstance(value, int)}
 
 
-def _flat_copies(copies: CopiesConstants, prefix: str) -> dict[str, int]:
-    given: dict[str, int] = {}
-    for kind in MESSAGE_KINDS:
-        own: CopyConstants = getattr(copies, kind)
-        for key in CopyConstants.model_fields:
-            value = getattr(own, key)
-            value = getattr(copies, key) if value is None else value
-            if value is not None:
-                given[f"{prefix}{kind}.{key}"] = value
-    return given
+def machine_of(numbers: Mapping[str, int], **others: Any) -> Machine:
+    """The machine with these numbers, by dotted key as in ``flat``, and these other fields."""
+    return Machine(**_arguments(Machine, numbers, ""), **others)
+
+
+def _arguments(cls: Any, numbers: Mapping[str, int], prefix: str) -> dict[str, Any]:
+    """Those of the numbers that a class of constants is made of, by its fields."""
+    made: dict[str, Any] = {}
+    for name, hint in _hints(cls).items():
+        key = prefix + key_of(name)
+        if key in numbers:
+            made[name] = numbers[key]
+        elif hint == Copies:
+            kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in MESSAGE_KINDS)
+            made[name] = tuple(CopyCost(**kind) for kind in kinds)
+        elif hint is TestCost:
+            made[name] = TestCost(**_arguments(TestCost, numbers, f"{key}."))
+    return made
+
+
+_hints = cache(get_type_hints)

@@ -1,24 +1,56 @@
-"""The machine, in the integers that a simulation runs on: picoseconds, bytes, bytes per second."""
+"""The machine, in the integers that a simulation runs on: picoseconds, bytes, bytes per second.
+
+A constant is declared here and nowhere else: its type says how users write it and in what range,
+the text below it what it means, and its name is the key in YAML (``constants.key_of``). A further
+one is a field here, a line in each preset, and its place of use.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.errors import ConfigError
+from simmpp.common.quantities import Bandwidth, Size, Time
+from simmpp.common.strict import Expect, integer, parsed_by
 from simmpp.common.units import UNLIMITED as UNLIMITED
-from simmpp.machine.torus import NO_CONTENTION
+from simmpp.common.units import shown
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
+
+MOST_PROCESSORS = 65536
+"""PEs of the largest torus of the presets: Blue Gene/L."""
+
+
+def _shape(value: object) -> tuple[int, ...]:
+    whole = isinstance(value, list | tuple) and all(
+        isinstance(n, int) and not isinstance(n, bool) and 1 <= n <= MOST_PROCESSORS for n in value
+    )
+    if not whole or not isinstance(value, list | tuple) or len(value) != 3:
+        raise ConfigError(f"value {shown(value)}: expected {_SHAPE}")
+    return tuple(value)
+
+
+_SHAPE = "three positive integers, such as [4, 4, 4]"
+_SIDES = {"type": "integer", "minimum": 1, "maximum": MOST_PROCESSORS}
+_THREE = {"type": "array", "items": _SIDES, "minItems": 3, "maxItems": 3}
+Shape = Annotated[tuple[int, int, int], parsed_by(_shape), Expect(_SHAPE, _THREE, "PEs")]
 
 
 @dataclass(frozen=True)
 class CopyCost:
     """Cost of packing or unpacking one message of a kind: fixed + payload bytes / bandwidth."""
 
-    fixed_ps: int = 0
-    bytes_per_s: int = UNLIMITED
+    fixed_ps: Time = 0
+    """Part that does not depend on the size."""
+    bytes_per_s: Bandwidth = UNLIMITED
+    """Payload bytes copied per time."""
+
+
+Copies = tuple[CopyCost, CopyCost, CopyCost, CopyCost]
+"""Of each kind of message: request, object, rays, load."""
 
 
 @dataclass(frozen=True)
@@ -27,12 +59,16 @@ class TestCost:
 
     __test__ = False  # not a test class, whatever pytest thinks of the name
 
-    sphere_ps: int
-    cone_ps: int
-    polygon_ps: int
-    mesh_ps: int
-    per_triangle_ps: int = 0
-    """Added for every triangle of a polygon or mesh beyond its first."""
+    sphere_ps: Time
+    """A test against a sphere."""
+    cone_ps: Time
+    """A test against a cone or cylinder."""
+    polygon_ps: Time
+    """A test against a polygon's first triangle."""
+    mesh_ps: Time
+    """A test against a mesh part's first triangle."""
+    per_triangle_ps: Time = 0
+    """For every triangle of a polygon or mesh beyond its first."""
 
     def of_objects(self, workload: Workload, dtype: type = np.int64) -> NDArray[Any]:
         """Cost of a test against each object, its own where the workload gives one: (N,) ps."""
@@ -57,28 +93,40 @@ class Machine:
     """
 
     name: str
-    shape: tuple[int, int, int]
-    """PEs along x, y, z of the torus; PE k = x + X (y + Y z)."""
-    send_startup_ps: int
-    receive_startup_ps: int
-    probe_ps: int
+    shape: Shape
+    """PEs along x, y, z of the torus, the most cubic when not given; PE k = x + X (y + Y z)."""
+    send_startup_ps: Time
+    """Sender's cost of any message."""
+    receive_startup_ps: Time
+    """Receiver's cost of any message."""
+    probe_ps: Time
     """Looking into an empty inbox before computing."""
-    pack: tuple[CopyCost, CopyCost, CopyCost, CopyCost]
-    unpack: tuple[CopyCost, CopyCost, CopyCost, CopyCost]
-    header_bytes: int
-    request_bytes: int
-    ray_bytes: int
-    latency_ps: int
-    hop_latency_ps: int
-    link_bytes_per_s: int
-    injection_bytes_per_s: int
+    pack: Copies
+    """Sender's copy of the payload."""
+    unpack: Copies
+    """Receiver's copy of the payload."""
+    header_bytes: Size
+    """Header of every message."""
+    request_bytes: Size
+    """Payload of a request."""
+    ray_bytes: Size
+    """One ray on the wire."""
+    latency_ps: Time
+    """Of the network, whatever the distance."""
+    hop_latency_ps: Time
+    """For each link a message crosses."""
+    link_bytes_per_s: Bandwidth
+    """Of one link, one way."""
+    injection_bytes_per_s: Bandwidth
+    """Between a PE and its router."""
     test: TestCost
-    ray_ps: int
+    """One ray-object intersection: one time, or by kind of primitive."""
+    ray_ps: Time
     """Set-up and shading of one ray."""
-    quantum: int
+    quantum: Annotated[int, *integer(1, 2**31 - 1, "tests")]
     """Tests that a PE computes at most before it looks into its inbox."""
-    contention: str = NO_CONTENTION
-    """What messages wait for: "none", or "links" (see ``machine.links``)."""
+    contention: Literal["none", "links"] = "none"
+    """What messages wait for: nothing, or links and ports that serve one at a time."""
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     """Where each constant comes from, by its dotted key; values without a document say ESTIMATE."""
 

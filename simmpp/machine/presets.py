@@ -9,17 +9,18 @@ from importlib.resources import as_file, files
 from math import prod
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Place, misplaced, structure
+from simmpp.common.places import KeyPath, Place, misplaced
+from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.validate import require_whole
-from simmpp.common.yamlfile import Document, KeyPath, read_yaml
-from simmpp.machine.constants import MOST_PROCESSORS, Constants
-from simmpp.machine.machine import CopyCost, Machine, TestCost
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.common.yamlfile import Document, read_yaml
+from simmpp.machine.constants import Constants, machine_of
+from simmpp.machine.machine import MOST_PROCESSORS, Machine
 from simmpp.machine.torus import default_shape
 
 _FOLDER = files("simmpp") / "machine" / "presets"
 OVERRIDDEN = "set by the user"
+DEFAULT_PRESET = "t3e"
 
 Shape = tuple[int, int, int]
 
@@ -35,6 +36,12 @@ class Preset:
     """Each constant as the preset's file writes it, with its unit, by dotted key."""
     sources: dict[str, str]
     """A citation for each constant, or ESTIMATE and the range; by the same keys."""
+
+    def source(self, key: str) -> str:
+        """Of a constant: ``pack.fixed`` in the file says what ``pack.rays.fixed`` is, too."""
+        first, _, last = key.partition(".")
+        candidates = (key, f"{first}.{last.rpartition('.')[2]}", first)
+        return next(self.sources[cited] for cited in candidates if cited in self.sources)
 
 
 def preset_names() -> list[str]:
@@ -96,7 +103,7 @@ def _values(
 
 
 def machine(
-    preset: str = "t3e",
+    preset: str = DEFAULT_PRESET,
     overrides: Mapping[str, object] | Constants | None = None,
     processors: int = 64,
     shape: Shape | None = None,
@@ -111,21 +118,14 @@ def machine(
         overrides = structure(Constants, dict(overrides or {}), {})
     chosen = load_preset(preset)
     changed = overrides.flat()
-    sources = {key: chosen.sources[_cited(key, chosen)] for key in chosen.constants.flat()}
-    return _machine(
-        preset,
-        torus_shape(processors, shape or overrides.shape),
+    sources = {key: chosen.source(key) for key in chosen.constants.flat()}
+    return machine_of(
         chosen.constants.flat() | changed,
-        sources | dict.fromkeys(changed, OVERRIDDEN),
-        overrides.contention,
+        name=preset,
+        shape=torus_shape(processors, shape or overrides.shape),
+        contention=overrides.contention,
+        sources=sources | dict.fromkeys(changed, OVERRIDDEN),
     )
-
-
-def _cited(key: str, preset: Preset) -> str:
-    """The key in the preset's file that set a constant: ``pack.fixed`` sets ``pack.rays.fixed``."""
-    first, _, last = key.partition(".")
-    candidates = (key, f"{first}.{last.rpartition('.')[2]}", first)
-    return next(candidate for candidate in candidates if candidate in preset.sources)
 
 
 def torus_shape(processors: int, shape: Shape | None) -> Shape:
@@ -138,42 +138,3 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
         expected = f"three integers whose product is processors = {processors}"
         raise ConfigError(f"value {list(shape)}: expected {expected}")
     return shape or default_shape(processors)
-
-
-def _machine(
-    name: str, shape: Shape, value: dict[str, int], sources: dict[str, str], contention: str
-) -> Machine:
-    def copies(key: str) -> tuple[CopyCost, CopyCost, CopyCost, CopyCost]:
-        request, object_, rays, load = (
-            CopyCost(value[f"{key}.{kind}.fixed"], value[f"{key}.{kind}.bandwidth"])
-            for kind in MESSAGE_KINDS
-        )
-        return request, object_, rays, load
-
-    return Machine(
-        name=name,
-        shape=shape,
-        send_startup_ps=value["send_startup"],
-        receive_startup_ps=value["receive_startup"],
-        probe_ps=value["probe"],
-        pack=copies("pack"),
-        unpack=copies("unpack"),
-        header_bytes=value["header_bytes"],
-        request_bytes=value["request_bytes"],
-        ray_bytes=value["ray_bytes"],
-        latency_ps=value["latency"],
-        hop_latency_ps=value["hop_latency"],
-        link_bytes_per_s=value["link_bandwidth"],
-        injection_bytes_per_s=value["injection_bandwidth"],
-        test=TestCost(
-            value["test.sphere"],
-            value["test.cone"],
-            value["test.polygon"],
-            value["test.mesh"],
-            value["test.per_triangle"],
-        ),
-        ray_ps=value["ray"],
-        quantum=value["quantum"],
-        contention=contention,
-        sources=sources,
-    )

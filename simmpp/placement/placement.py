@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from simmpp.common.validate import require_share, require_whole, require_word
-from simmpp.machine.limits import MOST_BYTES
+from simmpp.common.quantities import Share, Size
+from simmpp.common.strict import declared, integer, mistake
+from simmpp.common.validate import MOST_COUNT
 
 # --- cutting a row of things into near-equal parts ---
 
@@ -26,36 +28,43 @@ Residents = Literal["random", "nearest", "hot"]
 Pixels = Literal["blocks", "tiles", "interleaved", "random"]
 
 
-@dataclass(frozen=True)
+@declared
 class Memory:
     """What fits into the memory of one PE."""
 
-    fraction: Fraction = Fraction(1, 10)
-    """Share x of all N objects that is resident: max(own, floor(x N + 1/2)) objects."""
-    bytes: int | None = None
-    """The other way to say it: resident objects may take that many bytes; overrides fraction."""
+    fraction: Share = Fraction(1, 10)
+    """Share x of all N objects that is resident on each PE: max(own, floor(x N + 1/2)) objects."""
+    bytes: Size | None = None
+    """The other way to say it: room for resident objects, in place of the fraction."""
     residents: Residents = "random"
-    transient: int = 0
-    """Room for that many fetched objects besides the resident ones (least recently used leaves)."""
+    """Which objects are resident besides a PE's own."""
+    transient: Annotated[int, *integer(0, MOST_COUNT, "objects")] = 0
+    """Fetched objects kept besides the resident ones (least recently used leaves)."""
 
-    def __post_init__(self) -> None:
-        require_share("fraction", self.fraction)
+    @model_validator(mode="before")
+    @classmethod
+    def _one_size(cls, given: object) -> object:
+        """Of what users write; Python's ``replace`` always passes both."""
+        if isinstance(given, dict) and "fraction" in given and given.get("bytes") is not None:
+            raise mistake("expected fraction or bytes, got both")
+        return given
+
+    @model_serializer(mode="wrap")
+    def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        plain: dict[str, Any] = handler(self)
         if self.bytes is not None:
-            require_whole("bytes", self.bytes, 0, MOST_BYTES)
-        require_whole("transient", self.transient, 0)
-        require_word("residents", self.residents, get_args(Residents))
+            del plain["fraction"]
+        return plain
 
 
-@dataclass(frozen=True)
+@declared
 class PlacementRules:
     """How owners and pixels are chosen."""
 
     owners: Owners = "bisection"
+    """How objects are dealt to their owners."""
     pixels: Pixels = "blocks"
-
-    def __post_init__(self) -> None:
-        require_word("owners", self.owners, get_args(Owners))
-        require_word("pixels", self.pixels, get_args(Pixels))
+    """How pixels are dealt to the PEs that start them."""
 
 
 @dataclass(frozen=True, eq=False)

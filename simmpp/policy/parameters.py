@@ -2,52 +2,124 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal, get_args
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import AliasPath, Field, SerializerFunctionWrapHandler, model_serializer
+from pydantic.json_schema import SkipJsonSchema
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.units import shown
-from simmpp.common.validate import MOST_COUNT, require_whole, require_word
-from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.common.quantities import TIME, Time
+from simmpp.common.strict import Expect, Short, Switch, Text, declared, in_words, integer, parsed_by
+from simmpp.common.units import picoseconds, share, shown
+from simmpp.common.validate import MOST_COUNT, whole
+from simmpp.policy.registry import DEFAULT_POLICY, POLICIES
 
 LoadInfo = Literal["piggyback", "exact", "none"]
 
+_LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
+_MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
 
-@dataclass(frozen=True)
+
+def _name(value: object) -> str:
+    if not isinstance(value, str) or value not in POLICIES:
+        raise ConfigError(f"value {shown(value)}: expected {in_words(tuple(POLICIES))}")
+    return value
+
+
+def _min_load(value: object) -> Fraction | int:
+    """A share of n0 / nb (Fraction) or a number of rays (int), as users write it."""
+    if isinstance(value, Fraction) or (isinstance(value, str) and set("%/") & set(value)):
+        return share(value)
+    return _load(value, _MIN_LOAD)
+
+
+def _load(
+    value: object, expected: str = f"a Fraction or an integer from 0 to {MOST_COUNT}"
+) -> Fraction | int:
+    """The same, as Python passes it."""
+    try:
+        if isinstance(value, Fraction) and 0 <= value <= MOST_COUNT:
+            return value
+        return whole(value, 0, MOST_COUNT)
+    except ConfigError:
+        raise ConfigError(f"value {shown(value)}: expected {expected}") from None
+
+
+def _load_info(value: object) -> object:
+    """One of the words; ``{refresh: 5 ms}`` is piggyback, and sets ``refresh_ps`` as well."""
+    if isinstance(value, dict) and set(value) == {"refresh"}:
+        try:
+            picoseconds(value["refresh"])
+            return "piggyback"
+        except ConfigError:
+            pass
+    return _word(value)
+
+
+def _word(value: object) -> object:
+    if not isinstance(value, str) or value not in get_args(LoadInfo):
+        raise ConfigError(f"value {shown(value)}: expected {_LOAD_INFO}")
+    return value
+
+
+_NAME_SCHEMA = {"enum": list(POLICIES)}
+NAME = Short(in_words(tuple(POLICIES)), _NAME_SCHEMA)
+"""A policy's name alone is short for it."""
+_RAYS = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
+_MIN_LOAD_SCHEMA = {"anyOf": [_RAYS, {"type": "string", "pattern": "[%/]"}]}
+_REFRESH_SCHEMA = {
+    "type": "object",
+    "properties": {"refresh": TIME},
+    "required": ["refresh"],
+    "additionalProperties": False,
+}
+RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
+
+
+@declared
 class PolicyParameters:
     """One policy of a run. A rule that a policy does not have ignores its parameters."""
 
-    name: str
-    """A key of ``POLICIES``: object, ray, concurrent or replicated."""
-    label: str = ""
-    """Name in tables and rows; the policy's name when empty."""
-    min_load: Fraction | int = Fraction(12, 100)
-    """The paper's minimal load: a Fraction is a share of n0 / nb, an int a number of rays."""
-    batch: int = 256
-    """Rays that wait for one owner before they are sent, unless there is nothing else to do."""
-    ask_at_least: int = 32
-    """The paper's sufficient count: rays that wait for an object before it is asked for."""
-    load_info: LoadInfo = "piggyback"
-    """How a PE knows the load of another: from headers (the paper), exactly, or not at all."""
-    refresh_ps: int | None = None
-    """With piggyback: send the own load to partners that were sent nothing for that long. Policies
-    whose send rule reads no load ignore it, as they ignore load_info."""
-    merge_requests: bool = True
-    """One request per missing object in flight; False sends one request per waiting ray."""
-
-    def __post_init__(self) -> None:
-        require_whole("batch", self.batch, 1)
-        require_whole("ask_at_least", self.ask_at_least, 1)
-        require_word("load_info", self.load_info, get_args(LoadInfo))
-        if self.refresh_ps is not None:
-            require_whole("refresh_ps", self.refresh_ps, 0, CLOCK_LIMIT_PS)
-        least = self.min_load
-        if not isinstance(least, int | Fraction) or not 0 <= least <= MOST_COUNT:
-            expected = f"a Fraction or an integer from 0 to {MOST_COUNT}"
-            raise ConfigError(f"min_load: value {shown(least)}: expected {expected}")
+    name: Annotated[str, parsed_by(_name), Expect(in_words(tuple(POLICIES)), _NAME_SCHEMA)] = (
+        DEFAULT_POLICY
+    )
+    """The dataflow."""
+    label: Text | None = None
+    """Name in tables and rows; the policy's name when not given."""
+    min_load: Annotated[
+        Fraction | int,
+        parsed_by(_min_load, _load),
+        Expect(_MIN_LOAD, _MIN_LOAD_SCHEMA, "% or rays"),
+    ] = Fraction(12, 100)
+    """The paper's minimal load, above which rays may be sent (concurrent)."""
+    batch: RayCount = 256
+    """Rays for one owner that are sent together, unless there is nothing else to do."""
+    ask_at_least: RayCount = 32
+    """The paper's sufficient count: rays waiting for an object before it is asked for
+    (concurrent)."""
+    load_info: Annotated[
+        LoadInfo,
+        parsed_by(_load_info, _word),
+        Expect(_LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
+    ] = "piggyback"
+    """How a PE knows the load of others: from headers (the paper), exactly, or not at all; with
+    `refresh`, its own load is also sent to peers that were sent nothing for that long."""
+    refresh_ps: Annotated[
+        SkipJsonSchema[Time | None], Field(validation_alias=AliasPath("load_info", "refresh"))
+    ] = None
+    """That time. Policies whose send rule reads no load ignore it, as they ignore load_info."""
+    merge_requests: Switch = True
+    """One request per missing object in flight; false sends one request per waiting ray."""
 
     @property
     def title(self) -> str:
         """The label, or the name where none was given."""
         return self.label or self.name
+
+    @model_serializer(mode="wrap")
+    def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        plain: dict[str, Any] = handler(self)
+        if refresh := plain.pop("refresh_ps", None):
+            plain["load_info"] = {"refresh": refresh}
+        return plain

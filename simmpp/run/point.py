@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypedDict
 
-from simmpp.common.strict import misplaced
+from simmpp.common.places import misplaced
 from simmpp.config.config import Config
 from simmpp.engine.record.log import Sink
 from simmpp.engine.result import Result
@@ -74,8 +74,8 @@ def refuse_models(config: Config) -> None:
     """Raise ConfigError for a method that simulates nothing."""
     method = config.settings.method
     if method != SIMULATE:
-        places = config.source.places if config.source else {}
-        raise misplaced(("method",), f"value {method!r}: expected {SIMULATE} here", places)
+        problem = f"value {method!r}: expected {SIMULATE} here"
+        raise misplaced(("method",), problem, config.places)
 
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:

@@ -10,7 +10,6 @@ from math import prod
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted
-from simmpp.config.axes import axes_of
 from simmpp.config.config import Config, described, point_at
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.point import REFERENCE
@@ -67,8 +66,7 @@ class GridPoint:
 
 def further_columns(config: Config) -> tuple[str, ...]:
     """Columns of rows for the keys that only this sweep changes, in the order of its axes."""
-    axes = axes_of(config.settings.sweep).values()
-    names = (name for axis in axes for choice in axis for name in choice.columns)
+    names = (name for axis in config.axes.values() for choice in axis for name in choice.columns)
     return tuple(name for name in dict.fromkeys(names) if name not in OWN_COLUMNS)
 
 
@@ -86,7 +84,7 @@ def grid(config: Config) -> list[GridPoint]:
 
 def _require_feasible(config: Config, n_seeds: int) -> None:
     """Count before anything is made of it: four axes of a thousand values are easily written."""
-    n_combinations = prod(map(len, axes_of(config.settings.sweep).values()))
+    n_combinations = prod(map(len, config.axes.values()))
     if n_combinations * n_seeds > MOST_POINTS:
         raise ConfigError(
             f"sweep: {n_combinations} combinations with {counted(n_seeds, 'seed')} each: "
@@ -109,7 +107,7 @@ def comparisons(config: Config) -> list[Comparison]:
 
 
 def _combinations(config: Config) -> Iterator[tuple[Config, Mapping[str, Value]]]:
-    axes = axes_of(config.settings.sweep)
+    axes = config.axes
     columns = further_columns(config)
     for numbers in product(*(range(len(axis)) for axis in axes.values())):
         choices = dict(zip(axes, numbers, strict=True))

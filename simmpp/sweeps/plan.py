@@ -13,8 +13,8 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
-from simmpp.common.strict import misplaced
-from simmpp.config.axes import SAME, axes_of, keys_of
+from simmpp.common.places import misplaced
+from simmpp.config.axes import SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.methods.columns import KEYS, METHOD
 from simmpp.methods.table import METHODS
@@ -51,9 +51,7 @@ class Plan:
     @property
     def profit_keys(self) -> tuple[str, ...]:
         """Columns of ``profits.csv`` beyond those that all have."""
-        swept = {
-            key for axis in axes_of(self.config.settings.sweep).values() for key in keys_of(axis)
-        }
+        swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
 
     @property
@@ -143,16 +141,16 @@ def plan_of(config: Config) -> Plan:
 def _refuse_unknown(point: GridPoint) -> None:
     """Raise ConfigError for what the method of a point has no notion of."""
     config = point.config
-    method, places = config.settings.method, config.source.places if config.source else {}
+    method = config.settings.method
     known = METHODS[method].policies
     if known is None:
         return
     if point.policy.name not in known:
         problem = f"value {point.policy.name!r}: method {method} knows {' and '.join(known)} only"
-        raise misplaced(("policy",), problem, places)
+        raise misplaced(("policy",), problem, config.places)
     if config.memory.bytes is not None:
         problem = f"method {method} knows shares: expected memory.fraction"
-        raise misplaced(("memory", "bytes"), problem, places)
+        raise misplaced(("memory", "bytes"), problem, config.places)
 
 
 def _check_names(points: list[PlannedPoint], further: tuple[str, ...]) -> None:
@@ -196,15 +194,14 @@ def refuse_overruled(config: Config) -> None:
             path = tuple(key.split("."))
             if other in swept and _given(config.source.data, path):
                 problem = f"expected none: {other} is swept, and says the same in another way"
-                raise misplaced(path, problem, config.source.places)
+                raise misplaced(path, problem, config.places)
 
 
 def _swept_everywhere(config: Config) -> list[str]:
     """The keys that each point of the sweep sets; one of named points may be set in some only."""
-    axes = axes_of(config.settings.sweep).values()
     return [
         key
-        for axis in axes
+        for axis in config.axes.values()
         for key in axis[0].assignments
         if all(key in choice.assignments for choice in axis)
     ]

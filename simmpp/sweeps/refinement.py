@@ -23,8 +23,8 @@ from dataclasses import replace
 from fractions import Fraction
 from statistics import fmean
 
-from simmpp.common.strict import misplaced
-from simmpp.config.axes import Axis, axes_of
+from simmpp.common.places import misplaced
+from simmpp.config.axes import Axis
 from simmpp.config.config import Config, changed, described
 from simmpp.sweeps.grid import Comparison
 from simmpp.sweeps.intervals import half_width
@@ -50,13 +50,12 @@ def refined_keys(config: Config) -> list[str]:
     """
     if not config.settings.refine:
         return []
-    axes = axes_of(config.settings.sweep)
-    keys = [name for name, axis in axes.items() if _is_refinable(name, axis)]
+    keys = [name for name, axis in config.axes.items() if _is_refinable(name, axis)]
     if not keys:
         problem = (
             f"expected an axis of at least {FEWEST_POINTS} numbers under sweep, such as {FRACTION}"
         )
-        raise misplaced(("refine",), problem, config.source.places if config.source else {})
+        raise misplaced(("refine",), problem, config.places)
     return keys
 
 

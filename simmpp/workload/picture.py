@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Annotated, Literal
 
-from simmpp.common.validate import require_whole, require_word
-
-Samples = Literal["centres", "corners"]
+from simmpp.common.strict import Switch, declared, integer
 
 
-@dataclass(frozen=True)
+@declared
 class Picture:
     """Settings of one picture.
 
@@ -19,18 +16,18 @@ class Picture:
     SPD's testing procedures ask; the outermost edges of the picture lie at +-tan(angle / 2).
     """
 
-    resolution: int = 512
-    samples: Samples = "centres"
-    max_depth: int = 5
-    """Depth of the deepest ray; the eye ray has depth 1."""
-    shadows: bool = True
-    reflection: bool = True
-    refraction: bool = True
-
-    def __post_init__(self) -> None:
-        require_whole("resolution", self.resolution, 1)
-        require_whole("max_depth", self.max_depth, 1)
-        require_word("samples", self.samples, get_args(Samples))
+    resolution: Annotated[int, *integer(1, 16384, "pixels")] = 512
+    """Pixels along each side."""
+    samples: Literal["centres", "corners"] = "centres"
+    """A ray per pixel centre, or per corner (the SPD's rules)."""
+    max_depth: Annotated[int, *integer(1, 100)] = 5
+    """Depth of the deepest ray that is not a shadow ray; the eye ray has depth 1."""
+    shadows: Switch = True
+    """Trace shadow rays."""
+    reflection: Switch = True
+    """Trace reflected rays."""
+    refraction: Switch = True
+    """Trace refracted rays."""
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -84,7 +84,14 @@ def _objects(value: Any) -> Any:
     return value
 
 
-Objects = Annotated[str | dict[str, int], parsed_by(_objects), Expect(OBJECTS)]
+_CLUSTERS = {
+    "type": "object",
+    "properties": {"clusters": {"type": "integer", "minimum": 1}},
+    "required": ["clusters"],
+    "additionalProperties": False,
+}
+_OBJECTS = Expect(OBJECTS, {"anyOf": [{"enum": ["nodes", "components"]}, _CLUSTERS]})
+Objects = Annotated[str | dict[str, int], parsed_by(_objects), _OBJECTS]
 
 
 class SceneSettings(Strict):

@@ -120,6 +120,14 @@ def test_scene_lists_and_writes_nff() -> None:
     assert "more objects" not in again.stdout
 
 
+def test_machine_alone_lists_the_machines() -> None:
+    lines = simmpp("machine").stdout.splitlines()
+    assert [line.split()[0] for line in lines[1:]] == [
+        "bluegene-l", "t3d", "t3e", "tpu-v4", "xe6-hopper"
+    ]  # fmt: skip
+    assert "Cray T3E (300 MHz Alpha 21164" in lines[3]
+
+
 def test_machine_prints_sources() -> None:
     done = simmpp("machine", "t3e")
     assert done.stdout.startswith("t3e: Cray T3E")

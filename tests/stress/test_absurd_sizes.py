@@ -20,8 +20,12 @@ def test_pictures_that_no_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tracer, "BYTES_PER_RAY", 10**12)  # as if memory were that much smaller
     with pytest.raises(ConfigError, match=r"tetra:1: 4096 primary rays take 4096 TB, there are"):
         simmpp.trace(scene, simmpp.Picture(resolution=64))
+    with pytest.raises(ConfigError, match="resolution: value 1073741824: expected an integer from"):
+        simmpp.Picture(resolution=2**30)
+    beyond = simmpp.Picture()
+    object.__setattr__(beyond, "resolution", 2**30)  # past its own check
     with pytest.raises(ConfigError, match="more than 2147483647 rays"):
-        simmpp.trace(scene, simmpp.Picture(resolution=2**30))
+        simmpp.trace(scene, beyond)
 
 
 def test_sweeps_that_never_end(tmp_path: Path) -> None:

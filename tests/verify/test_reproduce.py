@@ -9,6 +9,7 @@ import pytest
 
 from simmpp.common.files import Row
 from simmpp.config.config import load_config
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.figures import FIGURES, PERCENT
@@ -123,7 +124,7 @@ def test_experiments_have_eight_seeds_and_nothing_of_their_own(name: str, tmp_pa
         "scene", "picture", "machine", "processors", "policy", "seeds", "sweep", "method"
     }  # fmt: skip
     assert settings.machine.model_fields_set == {"preset"}
-    assert all(policy.model_fields_set <= {"name"} for policy in settings.policy)
+    assert all(policy == PolicyParameters(policy.name) for policy in settings.policy)
 
 
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])

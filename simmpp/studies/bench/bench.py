@@ -11,7 +11,7 @@ from pathlib import Path
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
-from simmpp.config.axes import axes_of, keys_of
+from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
 from simmpp.methods.columns import PLACE
@@ -85,7 +85,7 @@ def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
 
 def refuse_unfit(config: Config) -> None:
     """Raise ConfigError for what a bench sets itself."""
-    swept = [key for axis in axes_of(config.settings.sweep).values() for key in keys_of(axis)]
+    swept = [key for axis in config.axes.values() for key in keys_of(axis)]
     for key in swept:
         if key.split(".")[0] in ("method", "policy"):
             raise ConfigError(f"sweep: {key}: expected no such axis; bench tries every method")

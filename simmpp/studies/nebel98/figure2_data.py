@@ -12,7 +12,6 @@ import numpy as np
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, write_csv
-from simmpp.config.axes import axes_of
 from simmpp.config.config import Config, point_at
 from simmpp.model.analytical import Makespans, Rays, analytical, grouped, rays_of
 from simmpp.model.border import FRACTIONS, OBJECT, PROCESSORS, RAY, TIE, winners
@@ -71,7 +70,7 @@ def model_grid(config: Config) -> Grid:
     processors: set[int] = set()
     fractions: set[Fraction] = set()
     left_out: dict[str, None] = {}
-    for name, axis in axes_of(config.settings.sweep).items():
+    for name, axis in config.axes.items():
         for number, choice in enumerate(axis):
             point = point_at(config, {name: axis}, {name: number})
             if "processors" in choice.assignments:

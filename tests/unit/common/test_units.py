@@ -123,6 +123,14 @@ def test_bounds_are_quantities_too(parse: Callable[[object], int], value: str, m
         parse(value)
 
 
+@given(number=st.integers(0, 10**13))
+def test_text_for_files_is_exact(number: int) -> None:
+    assert units.picoseconds(units.write_ps(number)) == number
+    assert units.byte_count(units.write_bytes(number)) == number
+    if number == units.UNLIMITED or number >= units.LEAST_BYTES_PER_S:
+        assert units.bytes_per_second(units.write_bytes_per_s(number)) == number
+
+
 def test_text_for_people() -> None:
     assert units.counted(1, "mesh") == "1 mesh"
     assert units.counted(2, "mesh") == "2 meshes"

@@ -1,0 +1,80 @@
+"""Settings that are quantities: users write text with a unit, Python passes exact integers.
+
+What is computed with is the integer (ps, bytes, bytes per second); files get the text again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, PlainSerializer
+
+from simmpp.common import units
+from simmpp.common.errors import ConfigError
+from simmpp.common.strict import Expect, parsed_by
+from simmpp.common.units import NUMBER, shown
+from simmpp.common.validate import whole
+
+_PREFIX = "(?:[pnuµμmkMGT]|[KMGT]i|pico|nano|micro|milli|kilo|mega|giga|tera|kibi|mebi|gibi|tebi)?"
+_SECONDS, _BYTES = rf"{_PREFIX}(?:s|min|seconds?|minutes?)", rf"{_PREFIX}(?:B|bytes?)"
+
+
+def _text(unit: str) -> dict[str, str]:
+    return {"type": "string", "pattern": rf"^\s*{NUMBER}\s*{unit}\s*$"}
+
+
+TIME = {"anyOf": [_text(_SECONDS), {"const": 0}]}
+"""JSON schemas of what users write."""
+SIZE = {"anyOf": [_text(_BYTES), {"const": 0}]}
+BANDWIDTH = {"anyOf": [_text(f"{_BYTES}/{_SECONDS}"), {"const": "unlimited"}]}
+SHARE_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})?")
+SHARE = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, SHARE_TEXT]}
+
+
+def _up_to(most: int) -> Callable[[object], int]:
+    """What Python passes for a quantity."""
+    return lambda value: whole(value, 0, most)
+
+
+def _fraction(value: object) -> Fraction:
+    """What Python passes for a share."""
+    if isinstance(value, str):
+        raise ConfigError(f"value {shown(value)}: expected a number from 0 to 1")
+    return units.share(value)
+
+
+def _marks(
+    written: Callable[[object], Any], passed: Callable[[object], Any], expected: Expect
+) -> tuple[BeforeValidator, Expect, PlainSerializer]:
+    return parsed_by(written, passed), expected, PlainSerializer(expected.write)
+
+
+_A_TIME = Expect(
+    units.A_TIME,
+    TIME,
+    "ps, ns, us, ms, s or min",
+    f"0 to {units.format_ps(units.LONGEST_PS)}",
+    units.write_ps,
+)
+_A_SIZE = Expect(
+    units.A_SIZE,
+    SIZE,
+    "B, kB, MB, GB, TB, KiB, MiB, GiB or TiB",
+    f"0 to {units.format_bytes(units.MOST_BYTES)}",
+    units.write_bytes,
+)
+_A_BANDWIDTH = Expect(
+    units.A_BANDWIDTH,
+    BANDWIDTH,
+    "B/s, kB/s, MB/s, GB/s or TB/s",
+    " to ".join(map(units.format_bytes_per_s, (units.LEAST_BYTES_PER_S, units.MOST_BYTES_PER_S))),
+    units.write_bytes_per_s,
+)
+Time = Annotated[int, *_marks(units.picoseconds, _up_to(units.LONGEST_PS), _A_TIME)]
+Size = Annotated[int, *_marks(units.byte_count, _up_to(units.MOST_BYTES), _A_SIZE)]
+Bandwidth = Annotated[
+    int, *_marks(units.bytes_per_second, _up_to(units.MOST_BYTES_PER_S), _A_BANDWIDTH)
+]
+Share = Annotated[Fraction, *_marks(units.share, _fraction, Expect(units.A_SHARE, SHARE))]

@@ -1,0 +1,62 @@
+"""The keys of a configuration as a JSON schema, so that editors complete and check a YAML file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema
+
+from simmpp.config.axes import MOST_VALUES, NAME, POINTS, UNSWEPT
+from simmpp.config.keys import keys
+from simmpp.config.settings import Settings
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema (draft 2020-12); what it accepts may still be refused for values that disagree."""
+    schema = _tidy(Settings.model_json_schema())
+    schema["properties"]["sweep"] |= _sweep()
+    return {"$schema": GenerateJsonSchema.schema_dialect, "title": "simmpp", **schema}
+
+
+def _tidy(node: Any) -> Any:
+    """Without titles that repeat names, and defaults that say nothing or a mapping's again."""
+    if isinstance(node, dict):
+        kept = {key: _tidy(child) for key, child in node.items()}
+        if isinstance(kept.get("title"), str):
+            del kept["title"]
+        if isinstance(text := kept.get("description"), str):
+            kept["description"] = " ".join(text.split())
+        if "default" in kept and not _says_something(kept["default"]):
+            del kept["default"]
+        return kept
+    return [_tidy(child) for child in node] if isinstance(node, list) else node
+
+
+def _says_something(default: object) -> bool:
+    plain = default[0] if isinstance(default, list) and default else default
+    return plain is not None and not isinstance(plain, dict)
+
+
+def _sweep() -> dict[str, Any]:
+    """Axes take lists of what their keys take; keys with commas take lists of lists."""
+    swept = {
+        name: {"$ref": key.pointer}
+        for name, key in keys().items()
+        if name.split(".")[0] not in UNSWEPT
+    }
+    point = {
+        "type": "object",
+        "properties": {NAME: {"type": "string", "minLength": 1}, **swept},
+        "required": [NAME],
+        "additionalProperties": False,
+    }
+    return {
+        "type": "object",
+        "properties": {name: _axis(values) for name, values in (swept | {POINTS: point}).items()},
+        "patternProperties": {",": _axis({"type": "array"})},
+        "additionalProperties": False,
+    }
+
+
+def _axis(values: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": values, "minItems": 1, "maxItems": MOST_VALUES}
