@@ -126,8 +126,10 @@ def _simulate(
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     from simmpp.commands.terminal import progress_bars
+    from simmpp.engine.record.recording import Recording
     from simmpp.run.point import run_point
 
+    counts = any(recorder.needs_counters for recorder in recorders)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
         tasks: dict[str, TaskID] = {}
@@ -139,8 +141,7 @@ def _simulate(
 
         each = run_point(
             point,
-            record_tests=record_tests,
-            record_counters=any(recorder.needs_counters for recorder in recorders),
+            record=Recording(tests=record_tests, counters=counts, hops=counts),
             log_of=partial(sink_of, recorders),
             progress=progress,
         )

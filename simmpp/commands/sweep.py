@@ -149,7 +149,7 @@ def _table(result: SweepResult) -> Table:
     """The first profits; the reference's own say nothing."""
     from rich.table import Table
 
-    from simmpp.run.point import REFERENCE
+    from simmpp.policy.registry import REFERENCE
 
     profits, names = result.profits[result.profits["policy"] != REFERENCE], _names(result)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))

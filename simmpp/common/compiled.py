@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from platformdirs import user_cache_path
@@ -42,6 +42,27 @@ def njit_reading(function: Function) -> Function:
     """
     with _kept_for(function) as kept:
         return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
+
+
+def kernel(function: Function) -> Function:
+    """:func:`njit_reading` for functions that are compiled once, whoever calls them.
+
+    Every integer argument is an int64. Left alone, numba would compile a function, and all that it
+    calls, again for the int32 of a record's field and for a number written at the call.
+    """
+    dispatcher: Any = njit_reading(function)
+    given = dispatcher.get_call_template
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        template, signature, _, rest = given(tuple(map(_widened, arguments)), keywords)
+        return template, signature, arguments, rest
+
+    dispatcher.get_call_template = get_call_template
+    return cast(Function, dispatcher)
+
+
+def _widened(kind: Any) -> Any:
+    return numba.types.int64 if isinstance(kind, numba.types.Integer) else kind
 
 
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
@@ -126,11 +147,14 @@ def _closure(module: str) -> set[str]:
     return closure
 
 
-def _imports(source: str) -> Iterator[str]:
+@cache
+def _imports(source: str) -> frozenset[str]:
     """Modules of this package that a source imports, wherever in it: functions import, too.
 
-    What only type checkers read is left out.
+    What only type checkers read is left out. Kept, as parsing takes milliseconds and every compiled
+    function asks for the digest of its module.
     """
+    modules: set[str] = set()
     pending: list[ast.AST] = [ast.parse(source)]
     while pending:
         node = pending.pop()
@@ -138,10 +162,11 @@ def _imports(source: str) -> Iterator[str]:
             continue
         pending.extend(ast.iter_child_nodes(node))
         if isinstance(node, ast.Import):
-            yield from filter(_is_ours, (alias.name for alias in node.names))
+            modules.update(filter(_is_ours, (alias.name for alias in node.names)))
         elif isinstance(node, ast.ImportFrom) and _is_ours(node.module or ""):
             names = [f"{node.module}.{alias.name}" for alias in node.names]
-            yield from {name if _file(name) else str(node.module) for name in names}
+            modules.update(name if _file(name) else str(node.module) for name in names)
+    return frozenset(modules)
 
 
 def _is_ours(module: str) -> bool:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit, njit_reading
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.layout import BEGIN, NONE, Row, Run
 from simmpp.engine.arrays.views import (
     child_offsets,
@@ -67,7 +67,7 @@ def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
     pixels = np.empty(n, np.int32)
     for me in range(s.processors):
         totals[me].last_ray = NONE
-        ray = pes(s)[me].ready_first
+        ray = pes(s)[me].first
         while ray != NONE:
             homes[ray], pixels[ray] = me, ray
             if not _add_ray(s, totals[me], me, ray, pixels, trees):
@@ -80,17 +80,18 @@ def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
     return True
 
 
-@njit_reading
+@kernel
 def _add_ray(
     s: Run, total: Row, me: int, ray: int, pixels: NDArray[np.int32], trees: NDArray[np.int32]
 ) -> bool:
     """Add one ray to the total of its PE and to its tree; False if the PE lacks an object."""
     offsets, objects, pixel = itinerary_offsets(s), itinerary_objects(s), pixels[ray]
     cost_ps = s.ray_ps
-    for at in range(offsets[ray], offsets[ray + 1]):
-        if not is_in_memory(s, me, objects[at]):
+    for i in range(offsets[ray], offsets[ray + 1]):
+        obj = objects[i]
+        if not is_in_memory(s, me, obj):
             return False
-        cost_ps += test_ps(s)[objects[at]]
+        cost_ps += test_ps(s)[obj]
     for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
         pixels[child] = pixel
     if ray == pixel or not s.depth_first:

@@ -13,7 +13,7 @@ from simmpp.common.units import counted
 from simmpp.config.axes import axes_of
 from simmpp.config.config import Config, described, point_at
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.run.point import REFERENCE
+from simmpp.policy.registry import REFERENCE
 from simmpp.sweeps.stopping import first_seeds
 
 MOST_POINTS = 1_000_000

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS
-from simmpp.run.point import REFERENCE
+from simmpp.policy.registry import REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.stopping import corrected_interval

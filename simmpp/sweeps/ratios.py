@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import NamedTuple
 
 from simmpp.common.files import Row
-from simmpp.run.point import CEILING, REFERENCE
+from simmpp.policy.registry import CEILING, REFERENCE
 from simmpp.run.profit import ratio
 
 CONCURRENT, RAY, REPLICATED = "concurrent", "ray", CEILING

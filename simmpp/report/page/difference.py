@@ -14,11 +14,11 @@ from statistics import fmean
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps
+from simmpp.policy.registry import REFERENCE
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import AXES
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
-from simmpp.run.point import REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.studies.check.moves import percent
 from simmpp.sweeps.intervals import interval

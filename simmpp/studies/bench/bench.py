@@ -18,8 +18,7 @@ from simmpp.config.settings import long_policies
 from simmpp.methods.columns import KEYS
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.plot.matplotlib_panels import draw
-from simmpp.policy.registry import DEFAULT_POLICY
-from simmpp.run.point import REFERENCE
+from simmpp.policy.registry import DEFAULT_POLICY, REFERENCE
 from simmpp.run.provenance import result_versions
 from simmpp.scene.load import load_scene
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs

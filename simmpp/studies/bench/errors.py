@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from simmpp.common.files import Row
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.run.point import REFERENCE
+from simmpp.policy.registry import REFERENCE
 from simmpp.sweeps.profits import MEASURES, profits_of
 
 QUANTITIES = {"makespan": "makespan_ps", "messages": "messages", **MEASURES}

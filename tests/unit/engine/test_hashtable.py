@@ -8,16 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.engine.arrays import hashtable as tables
-from simmpp.engine.arrays.layout import NONE, WANT
+from simmpp.engine.arrays.layout import MISS, NONE
 
 CAPACITY = 12
 keys = st.integers(0, 2**40) | st.integers(0, 20)
 
 
 def new_table() -> tables.Table:
-    return tables.Table(
-        np.zeros(16, np.int32), np.zeros(CAPACITY, WANT), np.array([NONE, 0], np.int32)
-    )
+    return tables.Table(np.zeros(16, np.int32), np.zeros(CAPACITY, MISS), np.zeros(2, np.int32))
 
 
 @given(st.lists(st.tuples(st.booleans(), keys)))
