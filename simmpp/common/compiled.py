@@ -18,51 +18,72 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 PACKAGE = __name__.partition(".")[0]
+OPTIONS = {"nopython": True, "error_model": "numpy", "nogil": True}
 
 
-def njit(function: Function) -> Function:
-    """Compile ``function`` on first use; no fastmath: results must not depend on the CPU.
+class _Compiled(CPUDispatcher):
+    """Is compiled once, whoever calls it: all integers are int64, and no number is a type.
 
-    It may make arrays, whoever calls it: left alone, numba would take that from the first caller.
+    Left alone, numba would compile a function, and all that it calls, again for the int32 of a
+    record's field and for a number written at the call.
     """
-    with _kept_for(function) as kept:
-        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=True)(function)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """What numba asks for a call from compiled code."""
+        template, signature, _, rest = super().get_call_template(tuple(map(_widened, args)), kws)
+        return template, signature, args, rest
 
 
-def njit_reading(function: Function) -> Function:
-    """:func:`njit` for functions that make no arrays: their calls count no references.
+class _Kernel(_Compiled):
+    """Has no code that Python could call."""
 
-    A search of a tree that calls one for each box takes a third of the time, a run of the engines,
-    all of whose arrays are made beforehand, four fifths.
-    """
-    with _kept_for(function) as kept:
-        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
-
-
-def kernel(function: Function) -> Function:
-    """:func:`njit_reading` for functions that are compiled once, whoever calls them.
-
-    Every integer argument is an int64. Left alone, numba would compile a function, and all that it
-    calls, again for the int32 of a record's field and for a number written at the call.
-    """
-    dispatcher: Any = njit_reading(function)
-    given = dispatcher.get_call_template
-
-    def get_call_template(arguments: Any, keywords: Any) -> Any:
-        template, signature, _, rest = given(tuple(map(_widened, arguments)), keywords)
-        return template, signature, arguments, rest
-
-    dispatcher.get_call_template = get_call_template
-    return cast(Function, dispatcher)
+    def __call__(self, *args: object) -> object:
+        """Refuse: without this, Python would jump to address 0."""
+        raise TypeError(f"{self.__name__} is called by compiled code only")
 
 
 def _widened(kind: Any) -> Any:
+    kind = numba.types.unliteral(kind)
     return numba.types.int64 if isinstance(kind, numba.types.Integer) else kind
+
+
+def njit(function: Function) -> Function:
+    """Compile ``function`` on first use, and keep it on disk with all that it calls.
+
+    For what Python calls. It may make arrays. No fastmath: results must not depend on the CPU.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": True})
+    with _kept_for(function) as kept:
+        if kept:
+            compiled.enable_caching()
+    return cast(Function, compiled)
+
+
+def kernel(function: Function) -> Function:
+    """:func:`njit` for what only compiled code calls, and what makes no arrays.
+
+    It is kept within its callers. To compile it takes half the time: it has no wrappers for Python
+    and C. Its calls count no references: a search of a tree that calls one for each box takes a
+    third of the time, a run of the engines four fifths.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    without = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast(Function, _Kernel(function, targetoptions=OPTIONS | without))
+
+
+def njit_reading(function: Function) -> Function:
+    """:func:`njit` for functions that make no arrays: their calls count no references."""
+    with _kept_for(function) as kept:
+        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
 
 
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import NONE, Row, Run
@@ -66,7 +66,7 @@ class CompiledRun:
         return int(events[0]["time_ps"]) if len(events) else 0
 
 
-@kernel
+@njit
 def _run(runs: NDArray[np.void], n_events: int) -> int:
     """Handle up to ``n_events`` events; the first call begins with all PEs at time 0."""
     s: Run = runs[0]

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import njit
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import (
     COPY,
@@ -169,7 +169,7 @@ def _of_the_policy(parameters: PolicyParameters, view: NDArray[np.void]) -> dict
     }
 
 
-@kernel
+@njit
 def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     """Make primary rays ready on the PEs of their pixels, in pixel order."""
     s: Run = runs[0]

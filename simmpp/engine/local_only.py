@@ -38,16 +38,31 @@ TOTALS = np.dtype(
 """What one PE has to do in all."""
 
 
-@njit
 def run_alone(runs: NDArray[np.void]) -> bool:
     """Run to the end, if no ray needs an object that its PE lacks; else do nothing.
 
     Returns whether it has. Of the state only what a result is made of is valid afterwards. The run
     must not have begun, and neither keep a log nor record its tests.
     """
+    n, n_primaries, processors = (
+        int(runs[name][0]) for name in ("rays_n", "rays_left", "processors")
+    )
+    totals = np.zeros(processors, TOTALS)
+    homes, trees = np.zeros(n_primaries, np.int32), np.zeros(n_primaries, np.int32)
+    return _run_alone(runs, totals, homes, trees, np.zeros(n, np.int32))
+
+
+@njit
+def _run_alone(
+    runs: NDArray[np.void],
+    totals: NDArray[np.void],
+    homes: NDArray[np.int32],
+    trees: NDArray[np.int32],
+    pixels: NDArray[np.int32],
+) -> bool:
+    """The same, with room for a total of each PE and what is noted of each pixel and ray."""
     s: Run = runs[0]
-    totals = np.zeros(s.processors, TOTALS)
-    if not _add_up(s, totals):
+    if not _add_up(s, totals, homes, trees, pixels):
         return False
     for me in range(s.processors):
         _pass_the_peak(runs, me, totals[me].largest_tree)
@@ -59,12 +74,15 @@ def run_alone(runs: NDArray[np.void]) -> bool:
     return True
 
 
-@njit
-def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
+@kernel
+def _add_up(
+    s: Run,
+    totals: NDArray[np.void],
+    homes: NDArray[np.int32],
+    trees: NDArray[np.int32],
+    pixels: NDArray[np.int32],
+) -> bool:
     """Fill (nb,) TOTALS; False as soon as an object is missing somewhere."""
-    n, n_primaries = rays(s).size, s.rays_left
-    homes, trees = np.empty(n_primaries, np.int32), np.zeros(n_primaries, np.int32)
-    pixels = np.empty(n, np.int32)
     for me in range(s.processors):
         totals[me].last_ray = NONE
         ray = pes(s)[me].first
@@ -73,7 +91,7 @@ def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
             if not _add_ray(s, totals[me], me, ray, pixels, trees):
                 return False
             ray = rays(s)[ray].next
-    for ray in range(n_primaries, n):
+    for ray in range(homes.size, pixels.size):
         me = homes[pixels[ray]]
         if not _add_ray(s, totals[me], me, ray, pixels, trees):
             return False
@@ -103,7 +121,7 @@ def _add_ray(
     return True
 
 
-@njit
+@kernel
 def _pass_the_peak(runs: NDArray[np.void], me: int, largest_tree: int) -> None:
     """Step until the PE can't hold more rays any more than it did at the start.
 
@@ -116,7 +134,7 @@ def _pass_the_peak(runs: NDArray[np.void], me: int, largest_tree: int) -> None:
         clock_ps = step(runs, me, BEGIN, NONE, clock_ps)
 
 
-@njit
+@kernel
 def _settle(s: Run, me: int, total: Row) -> None:
     """Enter what a PE has done in all into its account."""
     activities = total.tests // s.quantum
@@ -131,7 +149,7 @@ def _settle(s: Run, me: int, total: Row) -> None:
     s.last_ray_ps = max(s.last_ray_ps, pe.busy_until_ps)
 
 
-@njit
+@kernel
 def _is_left_over(s: Run, ray: int) -> bool:
     """Is the last ray of a PE still there when its last test has been made?
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.layout import NONE, Row, Run
 from simmpp.engine.arrays.views import free_ps, messages, topology
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -37,7 +37,7 @@ def inject(s: Run, m: Row) -> None:
     m.head_ps = _occupy(s, port(topology(s), m.source, 0), m.depart_ps, m.busy_ps) + s.latency_ps
 
 
-@kernel
+@njit
 def move_head(runs: NDArray[np.void], message: int) -> int:
     """The head of a message is at a link or at the last port: it takes it as soon as that is free.
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import entry_point, kernel
+from simmpp.common.compiled import entry_point, njit
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import ARRAYS, BINS, COUNTERS, PARAMETERS, REPORT, RUN, SIZES, Run
 from simmpp.engine.arrays.views import message_marks
@@ -113,7 +113,7 @@ class State:
         self._put(name, longer)
 
 
-@kernel
+@njit
 def room_lacking(runs: NDArray[np.void]) -> int:
     """How many messages one more step may send, if there might be no room for them; else 0.
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import prod
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
 """What messages wait for: nothing, or links and ports."""
@@ -62,7 +62,7 @@ def port(pe: int, out: int) -> int:
     return pe * ROWS_PER_PE + PORTS + out
 
 
-@kernel
+@njit
 def link_towards(shape: tuple[int, int, int], here: int, destination: int) -> tuple[int, int]:
     """Row of the link that leads from a PE to another one's, and the PE behind that link.
 
@@ -111,7 +111,7 @@ def ring_distance(size: int, a: int, b: int) -> int:
     return min(forward, size - forward)
 
 
-@kernel
+@njit
 def hops(x_size: int, y_size: int, z_size: int, source: int, destination: int) -> int:
     """Links that a message crosses the shortest way round; PE k = x + X (y + Y z)."""
     source_row, destination_row = source // x_size, destination // x_size

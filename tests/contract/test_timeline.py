@@ -38,7 +38,7 @@ def timeline_of(
             case.policy,
             engine=engine,
             ready_order=case.ready_order,
-            log=lambda rows: parts.append(timeline.add(rows.copy())),
+            record=Recording(log=lambda rows: parts.append(timeline.add(rows.copy()))),
         )
     return result, [*parts, timeline.end(result.makespan_ps)]
 

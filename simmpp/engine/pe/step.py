@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.hashtable import find, give_back
 from simmpp.engine.arrays.layout import BEGIN, DISPATCH, NONE, UNPACK, Run
 from simmpp.engine.arrays.views import (
@@ -41,7 +41,7 @@ from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 SLEEP = -1
 
 
-@kernel
+@njit
 def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int) -> int:
     """Act on an instant of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
 

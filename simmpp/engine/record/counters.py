@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import BINS, NONE, SIZES, Row, Run
 from simmpp.engine.arrays.views import (
@@ -163,7 +163,7 @@ def _join_moments(of_all: NDArray[np.void], i: int) -> None:
         to.finished = to.batches = to.rays = to.largest = 0
 
 
-@kernel
+@njit
 def end_counting(runs: NDArray[np.void]) -> None:
     """The run is over: what goes on ends here, and what has not departed never will."""
     s: Run = runs[0]

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import kernel
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.arrays.views import log, messages, pes
 
@@ -30,7 +30,7 @@ The rows of a PE come in the order of time; what comes later ends later.
 """
 
 
-@kernel
+@njit
 def note_arrival(runs: NDArray[np.void], message: int) -> None:
     """A message reached its destination's inbox."""
     s: Run = runs[0]
@@ -97,7 +97,7 @@ def hand_on(rows: NDArray[np.void], now_ps: int, sink: Sink) -> int:
     return len(late)
 
 
-@kernel
+@njit
 def _close_gaps(words: NDArray[np.int64], gaps: NDArray[np.int64]) -> None:
     """Move rows forward over those numbered ``gaps``; in place, as new memory costs more."""
     to, gap = gaps[0], 0
