@@ -48,6 +48,6 @@ def _drive(runs: Any) -> None:
         push(s, m.head_ps, HEAD + m.source, m.number, row)
     while s.n_events > 0:
         if heap(s)[0].rank >= HEAD:
-            move_first(runs)
+            move_first(s)
         else:
             pop(s)

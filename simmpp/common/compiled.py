@@ -12,12 +12,13 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from filelock import FileLock
 from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
@@ -27,7 +28,7 @@ PACKAGE = __name__.partition(".")[0]
 OPTIONS = {"nopython": True, "error_model": "numpy", "nogil": True}
 
 
-class _Compiled(CPUDispatcher):
+class _Compiled(CPUDispatcher):  # type: ignore[misc]
     """Is compiled once, whoever calls it: all integers are int64, and no number is a type.
 
     Left alone, numba would compile a function, and all that it calls, again for the int32 of a
@@ -82,8 +83,11 @@ def kernel(function: Function) -> Function:
 
 def njit_reading(function: Function) -> Function:
     """:func:`njit` for functions that make no arrays: their calls count no references."""
+    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": False})
     with _kept_for(function) as kept:
-        return numba.njit(cache=kept, error_model="numpy", nogil=True, _nrt=False)(function)
+        if kept:
+            compiled.enable_caching()
+    return cast(Function, compiled)
 
 
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
@@ -148,6 +152,16 @@ def keeps_code() -> bool:
 def is_compiled(module: str) -> bool:
     """Has machine code of this module, as it is now, been kept by an earlier run?"""
     return any(_folder(module).rglob("*.nbi"))
+
+
+@contextmanager
+def compiled_by_one(module: str) -> Iterator[None]:
+    """If code of this module is missing, wait for the process that makes it; it is found then."""
+    with ExitStack() as held:
+        if not is_compiled(module) and keeps_code():
+            with suppress(OSError, NotImplementedError):  # some shared file systems have no locks
+                held.enter_context(FileLock(_folder(module) / "lock"))
+        yield
 
 
 def _folder(module: str) -> Path:

@@ -83,43 +83,41 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         if s.rays_left == 0 and time_ps >= s.last_ray_ps:
             return FINISHED
         # Looked at before the event is taken, so that it is handled when there is room.
-        if room_lacking(runs):
+        if room_lacking(s):
             return FULL
         if rank >= HEAD:
-            move_first(runs)
+            move_first(s)
             continue
         pop(s)
         if message != NONE:
-            _arrive(runs, message, time_ps)
+            _arrive(s, message, time_ps)
         else:
-            _step(runs, rank - INSTANT, time_ps)
+            _step(s, rank - INSTANT, time_ps)
     return PAUSED
 
 
 @kernel
-def _arrive(runs: NDArray[np.void], message: int, now_ps: int) -> None:
+def _arrive(s: Run, message: int, now_ps: int) -> None:
     """A message lies in the inbox of its destination, and wakes it if it sleeps."""
-    s: Run = runs[0]
     me = messages(s)[message].destination
     process = processes(s)[me]
     link(messages(s), process, message)
     s.arrivals += 1
     if s.logs:
-        note_arrival(runs, message)
+        note_arrival(s, message)
     if process.asleep:
         process.asleep = 0
         _schedule_instant(s, me, now_ps)
 
 
 @kernel
-def _step(runs: NDArray[np.void], me: int, now_ps: int) -> None:
+def _step(s: Run, me: int, now_ps: int) -> None:
     """One instant of a PE; what it sends travels."""
-    s: Run = runs[0]
     process = processes(s)[me]
     message = process.first
     # Read before the step, which gives the message's place back and may use it for another one.
     following = messages(s)[message].next if message != NONE else NONE
-    next_ps = step(runs, me, process.phase, message, now_ps)
+    next_ps = step(s, me, process.phase, message, now_ps)
     process.phase = s.phase
     if s.consumed:
         process.first = following
@@ -137,12 +135,11 @@ def _step(runs: NDArray[np.void], me: int, now_ps: int) -> None:
 
 
 @kernel
-def move_first(runs: NDArray[np.void]) -> None:
+def move_first(s: Run) -> None:
     """The first event is the head of a message: it goes on, or the message arrives."""
-    s: Run = runs[0]
     event = heap(s)[0]
     rank, number, message = event.rank, event.number, event.message
-    next_ps = move_head(runs, message)
+    next_ps = move_head(s, message)
     m = messages(s)[message]
     if m.arrival_ps != NONE:
         rank = _arrival_rank(m)

@@ -65,7 +65,7 @@ def _run_alone(
     if not _add_up(s, totals, homes, trees, pixels):
         return False
     for me in range(s.processors):
-        _pass_the_peak(runs, me, totals[me].largest_tree)
+        _pass_the_peak(s, me, totals[me].largest_tree)
     s.activities, s.tests, s.last_ray_ps = 0, itinerary_objects(s).size, 0
     s.rays_done, s.rays_left = rays(s).size, 0
     for me in range(s.processors):
@@ -122,16 +122,15 @@ def _add_ray(
 
 
 @kernel
-def _pass_the_peak(runs: NDArray[np.void], me: int, largest_tree: int) -> None:
+def _pass_the_peak(s: Run, me: int, largest_tree: int) -> None:
     """Step until the PE can't hold more rays any more than it did at the start.
 
     Depth-first it never holds more than those of now and what is left of one tree.
     """
-    s: Run = runs[0]
     pe = pes(s)[me]
     at_the_start, clock_ps = pe.load, 0
     while pe.n_ready > 0 and (not s.depth_first or pe.load + largest_tree - 1 > at_the_start):
-        clock_ps = step(runs, me, BEGIN, NONE, clock_ps)
+        clock_ps = step(s, me, BEGIN, NONE, clock_ps)
 
 
 @kernel

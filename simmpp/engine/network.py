@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from simmpp.common.compiled import kernel, njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.layout import NONE, Row, Run
 from simmpp.engine.arrays.views import free_ps, messages, topology
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -37,13 +34,12 @@ def inject(s: Run, m: Row) -> None:
     m.head_ps = _occupy(s, port(topology(s), m.source, 0), m.depart_ps, m.busy_ps) + s.latency_ps
 
 
-@njit
-def move_head(runs: NDArray[np.void], message: int) -> int:
+@kernel
+def move_head(s: Run, message: int) -> int:
     """The head of a message is at a link or at the last port: it takes it as soon as that is free.
 
     Returns when the head is at the next one, or when the message arrives, which is known then.
     """
-    s: Run = runs[0]
     m = messages(s)[message]
     if m.at == m.destination:
         m.arrival_ps = _occupy(s, port(topology(s), m.at, 1), m.head_ps, m.busy_ps) + m.busy_ps

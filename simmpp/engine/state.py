@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import entry_point, njit
+from simmpp.common.compiled import entry_point, kernel, njit
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import ARRAYS, BINS, COUNTERS, PARAMETERS, REPORT, RUN, SIZES, Run
 from simmpp.engine.arrays.views import message_marks
@@ -34,7 +36,7 @@ class State:
         for name, array in arrays.items():
             self._put(name, array)
         first = len(PARAMETERS) + len(COUNTERS)
-        self._room_lacking = entry_point(room_lacking, self.runs)
+        self._room_lacking = _room_entry()
         self.report = self.runs.view(np.int64)[first : first + len(REPORT)]
         """(3,) int64: the REPORT fields of the record."""
 
@@ -113,18 +115,27 @@ class State:
         self._put(name, longer)
 
 
-@njit
-def room_lacking(runs: NDArray[np.void]) -> int:
+@kernel
+def room_lacking(s: Run) -> int:
     """How many messages one more step may send, if there might be no room for them; else 0.
 
     A step sends no more than a message for each ray that is left, and a batch and a load to each
-    PE; so does the place in the log, with a row for what it does before.
+    PE; in the log each has a row, and so has what the step does before.
     """
-    s: Run = runs[0]
     most = min(s.outbox_n, s.rays_left + 2 * s.processors)
     if s.messages_n - message_marks(s)[USED] < most or (s.logs and s.log_n - s.n_logged < most + 2):
         return most
     return 0
+
+
+@njit
+def _room_lacking(runs: NDArray[np.void]) -> int:
+    return room_lacking(runs[0])
+
+
+@cache
+def _room_entry() -> Callable[..., int]:
+    return entry_point(_room_lacking, np.zeros(1, RUN))
 
 
 # --- the state of a machine that stands still, in words ---

@@ -77,7 +77,8 @@ def _send_rays(s: Run, me: int, now_ps: int) -> int:
         owner = peer.key % s.processors
         _show_load(s, peer, owner, clock_ps)
         view.load, view.waiting = pe.load, peer.sendable
-        view.hops = hops(topology(s), me, owner) if s.knows_hops else 0
+        if s.knows_hops:
+            view.hops = hops(topology(s), me, owner)
         if allows(s.may_send, view):
             n_rays = peer.sendable
             head, tail = _take_rays(s, me, peer_row)
@@ -148,7 +149,8 @@ def _ask_for_objects(s: Run, me: int, now_ps: int) -> int:
         miss = miss_rows(s)[miss_row]
         obj = miss.key % s.n_objects
         view.load, view.waiting = pe.load, miss.unasked
-        view.hops = hops(topology(s), me, owners(s)[obj]) if s.knows_hops else 0
+        if s.knows_hops:
+            view.hops = hops(topology(s), me, owners(s)[obj])
         if allows(s.may_ask, view):
             requests = 1 if s.merge_requests else miss.unasked
             if miss.requests == 0:

@@ -8,10 +8,7 @@ messages that it leaves in the outbox; they know nothing of rays, objects or pol
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from simmpp.common.compiled import kernel, njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find, give_back
 from simmpp.engine.arrays.layout import BEGIN, DISPATCH, NONE, UNPACK, Run
 from simmpp.engine.arrays.views import (
@@ -41,15 +38,14 @@ from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 SLEEP = -1
 
 
-@njit
-def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int) -> int:
+@kernel
+def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     """Act on an instant of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold the phase of that instant, whether the message was consumed
     and the number of messages in the outbox.
     """
-    s: Run = runs[0]
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     pe = pes(s)[me]
     next_ps = now_ps

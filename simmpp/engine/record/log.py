@@ -30,10 +30,9 @@ The rows of a PE come in the order of time; what comes later ends later.
 """
 
 
-@njit
-def note_arrival(runs: NDArray[np.void], message: int) -> None:
+@kernel
+def note_arrival(s: Run, message: int) -> None:
     """A message reached its destination's inbox."""
-    s: Run = runs[0]
     m = messages(s)[message]
     _note(s, m.destination, ARRIVAL, 0, m.n, m.arrival_ps, m.arrival_ps)
     _note_message(s, message, m.source)
