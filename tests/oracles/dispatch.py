@@ -91,6 +91,6 @@ class Dispatch(World):
             return clock
         for other in self.others(pe):
             silence = clock - pe.last_departure[other]
-            if other in pe.partners and silence >= self.policy.refresh_ps:
+            if other in pe.peers and silence >= self.policy.refresh_ps:
                 clock = self.send(clock, pe, LOAD, other, 0)
         return clock

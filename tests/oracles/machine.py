@@ -83,7 +83,7 @@ class Simulation(Dispatch):
         pe.known_load[message.source] = Fraction(message.load)
         pe.heard[message.source] = clock
         if message.kind in (OBJECT, RAYS):
-            pe.partners.add(message.source)
+            pe.peers.add(message.source)
         if message.kind == OBJECT:
             self.release(pe, message.obj)
         elif message.kind == RAYS:

@@ -99,7 +99,7 @@ class World:
         pe.sends += 1
         pe.last_departure[destination] = clock
         if kind in (OBJECT, RAYS):
-            pe.partners.add(destination)
+            pe.peers.add(destination)
         self.ledger.sent.append(message)
         self.ledger.did(pe, begin, "send", clock, message)
         if self.machine.contention == "links":
