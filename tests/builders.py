@@ -14,6 +14,7 @@ from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.registry import CEILING, DEFAULT_POLICY, POLICIES
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
 
 SHAPES = (
@@ -212,13 +213,14 @@ def random_placement(rng: np.random.Generator, workload: Workload, processors: i
     return placement_of(owners, pixel_pes, processors, replicas, int(_pick(rng, (0, 0, 1, 2, 3))))
 
 
+_POLICY_DRAWS = (*[n for n in POLICIES if n != CEILING] * 5, *[DEFAULT_POLICY] * 5, CEILING)
+
+
 def random_policy(rng: np.random.Generator) -> PolicyParameters:
     """Any combination of parameters; replicated seldom, as it sends no messages."""
     shares = (Fraction(12, 100), Fraction(0), Fraction(1, 3), Fraction(1), Fraction(5, 2))
     return PolicyParameters(
-        name=_pick(
-            rng, ("object", "ray", "concurrent") * 5 + ("concurrent",) * 5 + ("replicated",)
-        ),
+        name=_pick(rng, _POLICY_DRAWS),
         min_load=_pick(rng, (*shares, 0, 1, 2, 7)),
         batch=int(rng.integers(1, 21)),
         ask_at_least=int(rng.integers(1, 9)),

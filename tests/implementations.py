@@ -5,17 +5,18 @@ from __future__ import annotations
 from builders import Case
 from oracles.ledger import Outcome, Slice
 from oracles.machine import simulate as simulate_slowly
-from oracles.rules import Rules
 
 from simmpp.engine.record.log import EVENT_KINDS
+from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.policy.rules import DataflowPolicy
 
 IMPLEMENTATIONS = ("oracle", *ENGINES)
 
 
-def run(implementation: str, case: Case, rules: Rules | None = None) -> Outcome:
+def run(implementation: str, case: Case, rules: DataflowPolicy | None = None) -> Outcome:
     """What a run of the case gives, with its log and its tests; ``rules`` are the oracle's."""
     if implementation == "oracle":
         return simulate_slowly(
@@ -33,8 +34,7 @@ def result_of(engine: str, case: Case) -> Result:
         case.policy,
         engine=engine,
         ready_order=case.ready_order,
-        log=True,
-        record_tests=True,
+        record=Recording(log=True, tests=True),
     )
 
 

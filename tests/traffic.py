@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from oracles.hop_by_hop import Sent
 
 from simmpp.engine.arrays.layout import MESSAGE
-from simmpp.engine.arrays.views import messages
-from simmpp.engine.compiled_engine import LOOP, move_first
-from simmpp.engine.event_heap import EVENT_KEY, HEAD, pop, push
+from simmpp.engine.arrays.views import heap, messages
+from simmpp.engine.compiled_engine import move_first
+from simmpp.engine.event_heap import HEAD, pop, push
 from simmpp.engine.initial import new_state
-from simmpp.engine.pe.sending import inject
+from simmpp.engine.network import inject
 from simmpp.machine.machine import UNLIMITED, Machine
 from simmpp.machine.torus import LINKS
 
@@ -27,32 +27,27 @@ def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
     case = case_of(OBJECT, [], owners=(), object_bytes=(), shape=machine.shape)
     a_byte_a_ps = {"header_bytes": 0, "link_bytes_per_s": BYTE_PER_PS}
     bare = replace(machine, contention=LINKS, injection_bytes_per_s=UNLIMITED, **a_byte_a_ps)
-    state = new_state(
-        case.workload,
-        bare,
-        case.placement,
-        case.policy,
-        ready_order="depth-first",
-        record_tests=False,
-    )
+    parts = (case.workload, bare, case.placement, case.policy)
+    state = new_state(*parts, ready_order="depth-first")
     rows = np.zeros(len(traffic), MESSAGE)
     for name in ("depart_ps", "source", "number", "destination"):
         rows[name] = [getattr(sent, name) for sent in traffic]
     rows["payload_bytes"] = [sent.busy_ps for sent in traffic]
     state._put("messages", rows)
-    _drive(state.runs, np.zeros(len(traffic) + 1, EVENT_KEY), np.zeros(1, LOOP))
+    state.ensure_heap()
+    _drive(state.runs)
     return state.messages["arrival_ps"].copy()
 
 
 @numba.njit
-def _drive(runs: Any, heap: Any, loops: Any) -> None:
-    s, loop = runs[0], loops[0]
+def _drive(runs: Any) -> None:
+    s = runs[0]
     for row in range(s.messages_n):
         m = messages(s)[row]
         inject(s, m)
-        push(heap, loop, m.head_ps, HEAD + m.source, m.number, row)
-    while loop.size > 0:
-        if heap[0].rank >= HEAD:
-            move_first(runs, heap, loop)
+        push(s, m.head_ps, HEAD + m.source, m.number, row)
+    while s.n_events > 0:
+        if heap(s)[0].rank >= HEAD:
+            move_first(s)
         else:
-            pop(heap, loop)
+            pop(s)

@@ -32,10 +32,9 @@ from simmpp.machine.presets import machine
 from simmpp.machine.torus import (
     LINKS,
     ROWS_PER_PE,
-    ejection_port,
     hops,
-    injection_port,
     link_towards,
+    port,
 )
 from simmpp.machine.transfer import transfer_ps
 from simmpp.placement.place import place
@@ -74,11 +73,11 @@ def book(
     """Reserve every link and port of a way at once; returns the arrival."""
     here, destination = ends
     latency_ps, hop_latency_ps = latencies_ps
-    head_ps = _reserve(free_ps, injection_port(here), depart_ps, busy_ps) + latency_ps
+    head_ps = _reserve(free_ps, port(here, 0), depart_ps, busy_ps) + latency_ps
     while here != destination:
         link, here = link_towards(shape, here, destination)
         head_ps = _reserve(free_ps, link, head_ps, busy_ps) + hop_latency_ps
-    return _reserve(free_ps, ejection_port(here), head_ps, busy_ps) + busy_ps
+    return _reserve(free_ps, port(here, 1), head_ps, busy_ps) + busy_ps
 
 
 @njit
@@ -160,7 +159,6 @@ def new_run(scene: str, chosen: Machine, policy: str) -> State:
         placement,
         parameters,
         ready_order="depth-first",
-        record_tests=False,
     )
 
 

@@ -23,6 +23,7 @@ from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders
 from simmpp.commands.terminal import notice, output, progress_bars
 from simmpp.commands.tracing import workload
 from simmpp.config.config import Config, load_config
+from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import row, write_rows
@@ -128,6 +129,7 @@ def _simulate(
     point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
+    counts = any(recorder.needs_counters for recorder in recorders)
     n_rays = point.workload.n_rays
     with progress_bars() as bars:
         loading = bars.add_task("loading the engine", total=None)
@@ -142,8 +144,7 @@ def _simulate(
 
         finished = run_point(
             point,
-            record_tests=record_tests,
-            record_counters=any(recorder.needs_counters for recorder in recorders),
+            record=Recording(tests=record_tests, counters=counts, hops=counts),
             log_of=partial(sink_of, recorders),
             progress=progress,
         )

@@ -81,15 +81,6 @@ def kernel(function: Function) -> Function:
     return cast(Function, _Kernel(function, targetoptions=OPTIONS | without))
 
 
-def njit_reading(function: Function) -> Function:
-    """:func:`njit` for functions that make no arrays: their calls count no references."""
-    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": False})
-    with _kept_for(function) as kept:
-        if kept:
-            compiled.enable_caching()
-    return cast(Function, compiled)
-
-
 def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 

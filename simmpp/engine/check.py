@@ -13,6 +13,7 @@ from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
+from simmpp.workload.check import is_cut
 from simmpp.workload.workload import Workload
 
 
@@ -29,8 +30,8 @@ def check_fit(workload: Workload, machine: Machine, placement: Placement) -> Non
 def _check_workload(workload: Workload) -> None:
     n, n_objects = workload.n_rays, workload.n_objects
     fits = {
-        "child_offsets": _is_cut(workload.child_offsets, n, workload.n_primaries, n),
-        "itinerary_offsets": _is_cut(workload.itinerary_offsets, n, 0, workload.n_tests),
+        "child_offsets": is_cut(workload.child_offsets, n, workload.n_primaries, n),
+        "itinerary_offsets": is_cut(workload.itinerary_offsets, n, 0, workload.n_tests),
         "itinerary_objects": _lie_below(workload.itinerary_objects, n_objects),
         "object_bytes": len(workload.object_bytes) == n_objects,
         "object_triangles": len(workload.object_triangles) == n_objects,
@@ -61,7 +62,7 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
     n_replicas = len(placement.replica_objects)
     fits = {
         "owners": len(placement.owners) == n_objects and _lie_below(placement.owners, nb),
-        "replica_offsets": _is_cut(placement.replica_offsets, nb, 0, n_replicas),
+        "replica_offsets": is_cut(placement.replica_offsets, nb, 0, n_replicas),
         "replica_objects": _lie_below(placement.replica_objects, n_objects),
         "pixel_pes": len(placement.pixel_pes) == workload.n_primaries
         and _lie_below(placement.pixel_pes, nb),
@@ -73,13 +74,6 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
                 f"the placement's {name} does not fit {nb} PEs, {n_objects} objects "
                 f"and {workload.n_primaries} primary rays"
             )
-
-
-def _is_cut(offsets: NDArray[np.signedinteger], n: int, first: int, last: int) -> bool:
-    """Do n + 1 offsets cut the numbers first ... last - 1 into n parts?"""
-    if len(offsets) != n + 1 or offsets[0] != first or offsets[-1] != last:
-        return False
-    return bool((offsets[1:] >= offsets[:-1]).all())
 
 
 def _lie_below(ids: NDArray[np.signedinteger], end: int) -> bool:

@@ -9,25 +9,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit_reading as njit
-from simmpp.engine.arrays.layout import Row
+from simmpp.common.compiled import kernel
+from simmpp.engine.arrays.layout import Row, Run
+from simmpp.engine.arrays.views import heap
 
-INSTANT = 1 << 62
+PE_BITS = 31
+"""A PE's number is an int32: the rank of an arrival is destination * 2^31 + source."""
+INSTANT = 1 << 2 * PE_BITS
 """Rank of a PE's own instants, above all pairs of PEs."""
 HEAD = INSTANT + (1 << 32)
 """Rank of heads of messages that come to a port or link, above all instants."""
 
-EVENT_KEY = np.dtype(
-    [
-        ("time_ps", "i8"),
-        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or HEAD + source
-        ("number", "i8"),  # the sender's send number, or the PE's instants so far
-        ("message", "i8"),  # that arrives or whose head moves; NONE at an instant
-    ]
-)
 
-
-@njit
+@kernel
 def _before(a: Row, time_ps: int, rank: int, number: int) -> bool:
     """Does event ``a`` come before the one with that key?"""
     if a.time_ps != time_ps:
@@ -37,52 +31,50 @@ def _before(a: Row, time_ps: int, rank: int, number: int) -> bool:
     return a.number < number
 
 
-@njit
-def _put(heap: NDArray[np.void], at: int, event: Row) -> None:
-    heap[at].time_ps, heap[at].rank = event.time_ps, event.rank
-    heap[at].number, heap[at].message = event.number, event.message
+@kernel
+def _put(events: NDArray[np.void], at: int, event: Row) -> None:
+    _set(events[at], event.time_ps, event.rank, event.number, event.message)
 
 
-@njit
-def push(
-    heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int, message: int
-) -> None:
+@kernel
+def _set(event: Row, time_ps: int, rank: int, number: int, message: int) -> None:
+    event.time_ps, event.rank, event.number, event.message = time_ps, rank, number, message
+
+
+@kernel
+def push(s: Run, time_ps: int, rank: int, number: int, message: int) -> None:
     """Add an event to the binary heap."""
-    at = loop.size
-    loop.size += 1
+    events, at = heap(s), s.n_events
+    s.n_events += 1
     while at > 0:
         parent = (at - 1) // 2
-        if _before(heap[parent], time_ps, rank, number):
+        if _before(events[parent], time_ps, rank, number):
             break
-        _put(heap, at, heap[parent])
+        _put(events, at, events[parent])
         at = parent
-    heap[at].time_ps, heap[at].rank = time_ps, rank
-    heap[at].number, heap[at].message = number, message
+    _set(events[at], time_ps, rank, number, message)
 
 
-@njit
-def pop(heap: NDArray[np.void], loop: Row) -> None:
+@kernel
+def pop(s: Run) -> None:
     """Remove the first event of the binary heap."""
-    loop.size -= 1
-    last = heap[loop.size]
-    replace_first(heap, loop, last.time_ps, last.rank, last.number, last.message)
+    s.n_events -= 1
+    last = heap(s)[s.n_events]
+    replace_first(s, last.time_ps, last.rank, last.number, last.message)
 
 
-@njit
-def replace_first(
-    heap: NDArray[np.void], loop: Row, time_ps: int, rank: int, number: int, message: int
-) -> None:
+@kernel
+def replace_first(s: Run, time_ps: int, rank: int, number: int, message: int) -> None:
     """Remove the first event and add one: quicker than both, above all if it soon follows."""
-    at, child = 0, 1
-    while child < loop.size:
+    events, at, child = heap(s), 0, 1
+    while child < s.n_events:
         right = child + 1
-        if right < loop.size:
-            r = heap[right]
-            if _before(r, heap[child].time_ps, heap[child].rank, heap[child].number):
+        if right < s.n_events:
+            r = events[right]
+            if _before(r, events[child].time_ps, events[child].rank, events[child].number):
                 child = right
-        if not _before(heap[child], time_ps, rank, number):
+        if not _before(events[child], time_ps, rank, number):
             break
-        _put(heap, at, heap[child])
+        _put(events, at, events[child])
         at, child = child, 2 * child + 1
-    heap[at].time_ps, heap[at].rank = time_ps, rank
-    heap[at].number, heap[at].message = number, message
+    _set(events[at], time_ps, rank, number, message)

@@ -2,31 +2,35 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
+from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import (
-    ARRAYS,
-    BINS,
     COPY,
     LOAD_INFO,
+    MACHINE,
     NONE,
-    PARAMETERS,
     PIGGYBACK,
-    SIZES,
     Run,
+    Sizes,
+    allocated,
 )
 from simmpp.engine.arrays.views import pes, rays
 from simmpp.engine.record.counters import first_width
-from simmpp.engine.record.log import LOG_ROWS, Sink
+from simmpp.engine.record.log import LOG_ROWS
+from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.residency import Arrays, resident_arrays, resident_bytes, row_bytes
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.machine.torus import LINKS, ROWS_PER_PE
+from simmpp.machine.topology import network_of, topology_of
+from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
+from simmpp.policy.compiled_rules import NUMBERS, VIEW, address_of
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.registry import POLICIES
 from simmpp.workload.workload import Workload
@@ -39,30 +43,29 @@ def new_state(
     parameters: PolicyParameters,
     *,
     ready_order: str,
-    record_tests: bool,
-    record_counters: bool = False,
-    record_hops: bool = False,
-    log: Sink | None = None,
+    recording: Recording = NOTHING,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     everything = POLICIES[parameters.name].all_resident
-    n_recorded = workload.n_tests if record_tests else 0
-    arrays = _own_arrays(workload, placement, parameters, n_recorded, logs=log is not None)
-    arrays |= _counting_arrays(placement.processors if record_counters else 0)
+    arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays["rule_view"] = view = _rule_view(workload, placement, parameters)
     flags = {
         "depth_first": ready_order == "depth-first",
-        "record_tests": record_tests,
-        "record_counters": record_counters,
-        "record_hops": record_hops,
+        "record_tests": recording.tests,
+        "record_counters": recording.counters,
+        "record_hops": recording.hops,
         "bin_width": first_width(_least_ps(workload, machine)),
-        "logs": log is not None,
+        "logs": recording.sink is not None,
     }
-    state = State(arrays, _parameters(workload, machine, placement, parameters) | flags, log)
+    scalars = {name: getattr(machine, name) for name in MACHINE}
+    scalars |= _of_the_run(workload, machine, placement)
+    scalars |= _of_the_policy(parameters, view)
+    state = State(arrays, scalars | flags, recording.sink)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
-    if record_counters:
+    if recording.counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
 
@@ -74,8 +77,27 @@ def _least_ps(workload: Workload, machine: Machine) -> int:
     return total_ps // machine.processors
 
 
+def _sizes(
+    workload: Workload, placement: Placement, parameters: PolicyParameters, recording: Recording
+) -> Sizes:
+    nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
+    # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
+    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
+    return Sizes(
+        nb=nb,
+        objects=n_objects,
+        rays=n_rays,
+        misses=1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1)),
+        peers=1 + min(nb * nb, 2 * workload.n_tests),
+        sent=sent,
+        tested=workload.n_tests if recording.tests else 0,
+        logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
+        counted=nb if recording.counters else 0,
+    )
+
+
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
-    n_links = ROWS_PER_PE * machine.processors if machine.contention == LINKS else 0
+    topology = topology_of(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -85,98 +107,61 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "test_ps": machine.test.of_objects(workload),
         "owners": placement.owners,
         "copy_costs": np.array(costs, COPY),
-        "free_ps": np.zeros(n_links, np.int64),
+        "topology": network_of(topology),
+        "free_ps": np.zeros(topology.n_links if machine.contention == LINKS else 0, np.int64),
     }
 
 
-def _counting_arrays(nb: int) -> Arrays:
-    sizes = {
-        "compute_bins": nb * BINS,
-        "communication_bins": nb * BINS,
-        "moments": BINS,
-        "traffic": nb * nb,
-        "sizes": len(MESSAGE_KINDS) * SIZES,
-        "slices": nb,
-    }
-    return {name: np.zeros(size if nb else 0, ARRAYS[name]) for name, size in sizes.items()}
+def _rule_view(
+    workload: Workload, placement: Placement, parameters: PolicyParameters
+) -> NDArray[np.void]:
+    """(1,) VIEW with the policy's numbers in it."""
+    view = np.zeros(1, VIEW)
+    for name in NUMBERS:
+        view[name] = _in_rays(getattr(parameters, name), workload, placement)
+    return view
 
 
-def _own_arrays(
-    workload: Workload,
-    placement: Placement,
-    parameters: PolicyParameters,
-    n_recorded: int,
-    *,
-    logs: bool,
-) -> Arrays:
-    nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
-    n_wants = 1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1))
-    n_partners = 1 + min(nb * nb, 2 * workload.n_tests)
-    # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
-    most_sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
-    sizes = {
-        "sent_by_kind": 4,
-        "pes": nb,
-        "rays": n_rays,
-        "wants": n_wants,
-        "wants_buckets": _power_of_two(n_wants),
-        "partners": n_partners,
-        "partners_buckets": _power_of_two(n_partners),
-        "messages": min(most_sent, n_objects + 2 * nb + 1),
-        "unasked_ends": 4 * nb,
-        "unasked_links": 2 * n_wants,
-        "recent_ends": 2 * nb,
-        "recent_links": 2 * n_wants,
-        "unsent_ends": 4 * nb,
-        "unsent_links": 2 * n_partners,
-        "exchanged_ends": 2 * nb,
-        "exchanged_links": 2 * n_partners,
-        "sendable_ends": 2 * n_partners,
-        "sendable_links": 2 * n_wants,
-        "outbox": most_sent,
-        "sort_keys": max(n_objects, nb),
-        "sort_items": max(n_objects, nb),
-        "tested_rays": n_recorded,
-        "tested_objects": n_recorded,
-        "log": 2 * LOG_ROWS + most_sent if logs else 0,
-    }
-    arrays = {name: np.zeros(size, ARRAYS[name]) for name, size in sizes.items()}
-    marks = ("wants_marks", "partners_marks", "messages_marks")
-    return arrays | {name: np.array([NONE, 0], np.int32) for name in marks}
+def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -> int:
+    """A share of n0 / nb as a number of rays.
+
+    A load is an integer: it exceeds a fraction exactly if it exceeds its floor.
+    """
+    if isinstance(number, int):
+        return number
+    return int(number * workload.n_primaries // placement.processors)
 
 
-def _power_of_two(n: int) -> int:
-    return 1 << max(4, (n - 1).bit_length())
-
-
-def _parameters(
-    workload: Workload, machine: Machine, placement: Placement, parameters: PolicyParameters
-) -> dict[str, int]:
-    policy = POLICIES[parameters.name]
-    nb, n0, min_load = machine.processors, workload.n_primaries, parameters.min_load
-    load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
-    listens = policy.knows_loads and load_info == PIGGYBACK
+def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
     limits = [b for b in (machine.link_bytes_per_s, machine.injection_bytes_per_s) if b]
-    x, y, z = machine.shape
-    return {name: getattr(machine, name) for name in PARAMETERS if hasattr(machine, name)} | {
-        "x": x,
-        "y": y,
-        "z": z,
+    return {
+        "processors": machine.processors,
         "n_objects": workload.n_objects,
         "bytes_per_s": min(limits, default=0),
         "contends": machine.contention == LINKS,
         "transient": placement.transient,
         "row_bytes": row_bytes(placement, workload.n_objects),
+        "initial_load": workload.n_primaries // machine.processors,
+    }
+
+
+def _of_the_policy(parameters: PolicyParameters, view: NDArray[np.void]) -> dict[str, int]:
+    policy = POLICIES[parameters.name]
+    load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
+    listens = policy.knows_loads and load_info == PIGGYBACK
+
+    def count(of: int | str) -> int:
+        return of if isinstance(of, int) else int(view[of][0])
+
+    return {
         "all_resident": policy.all_resident,
         "sends": policy.sends,
         "asks": policy.asks,
-        "may_send": policy.may_send.address,
-        "may_ask": policy.may_ask.address,
-        # A load is an integer: it exceeds a fraction exactly if it exceeds its floor.
-        "min_load": min_load if isinstance(min_load, int) else int(min_load * n0 // nb),
-        "initial_load": n0 // nb,
-        "batch": parameters.batch,
-        "ask_at_least": policy.ask_at_least or parameters.ask_at_least,
+        "may_send": address_of(policy.may_send),
+        "may_ask": address_of(policy.may_ask),
+        "send_from": count(policy.send_from),
+        "ask_from": count(policy.ask_from),
+        "knows_hops": policy.knows_hops,
         "load_info": load_info,
         "listens": listens,
         "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,
@@ -189,16 +174,10 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     """Make primary rays ready on the PEs of their pixels, in pixel order."""
     s: Run = runs[0]
     for me in range(s.processors):
-        pes(s)[me].ready_first = NONE
-        pes(s)[me].ready_last = NONE
+        pes(s)[me].first = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
-        rays(s)[ray].next = NONE
-        if pe.ready_first == NONE:
-            pe.ready_first = ray
-        else:
-            rays(s)[pe.ready_last].next = ray
-        pe.ready_last = ray
+        link(rays(s), pe, ray)
         pe.n_ready += 1
     for me in range(s.processors):
         pe = pes(s)[me]

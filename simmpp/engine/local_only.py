@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit, njit_reading
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.layout import BEGIN, NONE, Row, Run
 from simmpp.engine.arrays.views import (
     child_offsets,
@@ -38,19 +38,34 @@ TOTALS = np.dtype(
 """What one PE has to do in all."""
 
 
-@njit
 def run_alone(runs: NDArray[np.void]) -> bool:
     """Run to the end, if no ray needs an object that its PE lacks; else do nothing.
 
     Returns whether it has. Of the state only what a result is made of is valid afterwards. The run
     must not have begun, and neither keep a log nor record its tests.
     """
+    n, n_primaries, processors = (
+        int(runs[name][0]) for name in ("rays_n", "rays_left", "processors")
+    )
+    totals = np.zeros(processors, TOTALS)
+    homes, trees = np.zeros(n_primaries, np.int32), np.zeros(n_primaries, np.int32)
+    return _run_alone(runs, totals, homes, trees, np.zeros(n, np.int32))
+
+
+@njit
+def _run_alone(
+    runs: NDArray[np.void],
+    totals: NDArray[np.void],
+    homes: NDArray[np.int32],
+    trees: NDArray[np.int32],
+    pixels: NDArray[np.int32],
+) -> bool:
+    """The same, with room for a total of each PE and what is noted of each pixel and ray."""
     s: Run = runs[0]
-    totals = np.zeros(s.processors, TOTALS)
-    if not _add_up(s, totals):
+    if not _add_up(s, totals, homes, trees, pixels):
         return False
     for me in range(s.processors):
-        _pass_the_peak(runs, me, totals[me].largest_tree)
+        _pass_the_peak(s, me, totals[me].largest_tree)
     s.activities, s.tests, s.last_ray_ps = 0, itinerary_objects(s).size, 0
     s.rays_done, s.rays_left = rays(s).size, 0
     for me in range(s.processors):
@@ -59,38 +74,42 @@ def run_alone(runs: NDArray[np.void]) -> bool:
     return True
 
 
-@njit
-def _add_up(s: Run, totals: NDArray[np.void]) -> bool:
+@kernel
+def _add_up(
+    s: Run,
+    totals: NDArray[np.void],
+    homes: NDArray[np.int32],
+    trees: NDArray[np.int32],
+    pixels: NDArray[np.int32],
+) -> bool:
     """Fill (nb,) TOTALS; False as soon as an object is missing somewhere."""
-    n, n_primaries = rays(s).size, s.rays_left
-    homes, trees = np.empty(n_primaries, np.int32), np.zeros(n_primaries, np.int32)
-    pixels = np.empty(n, np.int32)
     for me in range(s.processors):
         totals[me].last_ray = NONE
-        ray = pes(s)[me].ready_first
+        ray = pes(s)[me].first
         while ray != NONE:
             homes[ray], pixels[ray] = me, ray
             if not _add_ray(s, totals[me], me, ray, pixels, trees):
                 return False
             ray = rays(s)[ray].next
-    for ray in range(n_primaries, n):
+    for ray in range(homes.size, pixels.size):
         me = homes[pixels[ray]]
         if not _add_ray(s, totals[me], me, ray, pixels, trees):
             return False
     return True
 
 
-@njit_reading
+@kernel
 def _add_ray(
     s: Run, total: Row, me: int, ray: int, pixels: NDArray[np.int32], trees: NDArray[np.int32]
 ) -> bool:
     """Add one ray to the total of its PE and to its tree; False if the PE lacks an object."""
     offsets, objects, pixel = itinerary_offsets(s), itinerary_objects(s), pixels[ray]
     cost_ps = s.ray_ps
-    for at in range(offsets[ray], offsets[ray + 1]):
-        if not is_in_memory(s, me, objects[at]):
+    for i in range(offsets[ray], offsets[ray + 1]):
+        obj = objects[i]
+        if not is_in_memory(s, me, obj):
             return False
-        cost_ps += test_ps(s)[objects[at]]
+        cost_ps += test_ps(s)[obj]
     for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
         pixels[child] = pixel
     if ray == pixel or not s.depth_first:
@@ -102,20 +121,19 @@ def _add_ray(
     return True
 
 
-@njit
-def _pass_the_peak(runs: NDArray[np.void], me: int, largest_tree: int) -> None:
+@kernel
+def _pass_the_peak(s: Run, me: int, largest_tree: int) -> None:
     """Step until the PE can't hold more rays any more than it did at the start.
 
     Depth-first it never holds more than those of now and what is left of one tree.
     """
-    s: Run = runs[0]
     pe = pes(s)[me]
     at_the_start, clock_ps = pe.load, 0
     while pe.n_ready > 0 and (not s.depth_first or pe.load + largest_tree - 1 > at_the_start):
-        clock_ps = step(runs, me, BEGIN, NONE, clock_ps)
+        clock_ps = step(s, me, BEGIN, NONE, clock_ps)
 
 
-@njit
+@kernel
 def _settle(s: Run, me: int, total: Row) -> None:
     """Enter what a PE has done in all into its account."""
     activities = total.tests // s.quantum
@@ -130,7 +148,7 @@ def _settle(s: Run, me: int, total: Row) -> None:
     s.last_ray_ps = max(s.last_ray_ps, pe.busy_until_ps)
 
 
-@njit
+@kernel
 def _is_left_over(s: Run, ray: int) -> bool:
     """Is the last ray of a PE still there when its last test has been made?
 

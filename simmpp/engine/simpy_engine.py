@@ -12,13 +12,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Generator
 
+import numpy as np
 import simpy
+from numpy.typing import NDArray
 from simpy.events import Event
 
-from simmpp.common.compiled import entry_point
+from simmpp.common.compiled import entry_point, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.layout import BEGIN, MESSAGE, NONE
-from simmpp.engine.pe.sending import move_head
+from simmpp.engine.network import move_head
 from simmpp.engine.pe.step import SLEEP, step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, starved
@@ -31,6 +33,21 @@ _FIRST = -1  # priority before all others of its instant
 _PROGRESS_EVERY = 4096
 
 
+@njit
+def _step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int) -> int:
+    return step(runs[0], me, phase, message, now_ps)
+
+
+@njit
+def _move_head(runs: NDArray[np.void], message: int) -> int:
+    return move_head(runs[0], message)
+
+
+@njit
+def _note_arrival(runs: NDArray[np.void], message: int) -> None:
+    note_arrival(runs[0], message)
+
+
 class SimpyRun:
     """One run, on a SimPy environment whose clock counts integer picoseconds."""
 
@@ -38,9 +55,9 @@ class SimpyRun:
         self.state = state
         self.arrivals = 0
         self._progress = progress
-        self._note_arrival = entry_point(note_arrival, state.runs, 0)
-        self._move_head = entry_point(move_head, state.runs, 0)
-        self._step = entry_point(step, state.runs, 0, 0, 0, 0)
+        self._note_arrival = entry_point(_note_arrival, state.runs, 0)
+        self._move_head = entry_point(_move_head, state.runs, 0)
+        self._step = entry_point(_step, state.runs, 0, 0, 0, 0)
         self._environment = simpy.Environment()
         self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
         self._asleep: list[Event | None] = [None] * len(state.pes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,8 @@ from simmpp.engine.arrays.layout import NONE
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state
-from simmpp.engine.record.log import Collector, Sink
+from simmpp.engine.record.log import Collector
+from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State
@@ -41,35 +43,22 @@ def simulate(
     *,
     engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
-    log: bool | Sink = False,
-    record_tests: bool = False,
-    record_counters: bool = False,
-    record_hops: bool = False,
+    record: Recording = NOTHING,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Replay a workload on a simulated machine.
 
-    ``log`` keeps the event log in the result; a function gets its rows, (n,) EVENT, as they become
-    final, and nothing is kept. ``record_tests`` keeps the (ray, object) pairs that PEs tested,
-    ``record_counters`` what pictures are made of, ``record_hops`` the links that were crossed for
-    each ray. ``progress`` is called now and then with the number of rays left.
+    ``record`` says what is noted besides the totals. ``progress`` is called now and then with the
+    number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
     are left and nothing is scheduled (a bug, or a policy that starves).
     """
     _check(workload, machine, placement, policy, engine, ready_order)
     collector = Collector()
-    sink = collector if log is True else log or None
+    recording = replace(record, log=collector) if record.log is True else record
     state = new_state(
-        workload,
-        machine,
-        placement,
-        policy,
-        ready_order=ready_order,
-        record_tests=record_tests,
-        record_counters=record_counters,
-        record_hops=record_hops,
-        log=sink,
+        workload, machine, placement, policy, ready_order=ready_order, recording=recording
     )
     run = ENGINES[engine](state, progress)
     try:
@@ -77,7 +66,7 @@ def simulate(
     except OverflowError:
         raise beyond_the_clock() from None
     state.close_log()
-    rows = collector.rows() if log is True else None
+    rows = collector.rows() if record.log is True else None
     return _conclude(state, run.arrivals, policy, engine, rows)
 
 
@@ -143,7 +132,7 @@ def _conclude(
 
 def _sent_by(state: State, end_ps: int) -> tuple[tuple[int, int, int, int], int]:
     """Messages and bytes that had departed at the end; only load messages can be later."""
-    pool = state.messages[: state.arrays["messages_marks"][USED]]
+    pool = state.messages[: state.arrays["message_marks"][USED]]
     late = pool[(pool["kind"] != NONE) & (pool["depart_ps"] > end_ps)]
     by_kind = state.arrays["sent_by_kind"] - np.bincount(late["kind"], minlength=4)
     header_bytes = state["header_bytes"]

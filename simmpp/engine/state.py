@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.compiled import entry_point, kernel, njit
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import (
-    ARRAYS,
-    BINS,
-    COUNTERS,
-    PARAMETERS,
-    REPORT,
-    RUN,
-    SIZES,
-)
+from simmpp.engine.arrays.layout import ARRAYS, BINS, COUNTERS, PARAMETERS, REPORT, RUN, SIZES, Run
+from simmpp.engine.arrays.views import message_marks
 from simmpp.engine.record.counters import Counters, end_counting
 from simmpp.engine.record.log import LOG_ROWS, Sink, hand_on, hand_on_last
 from simmpp.engine.residency import Arrays
@@ -40,11 +36,12 @@ class State:
         for name, array in arrays.items():
             self._put(name, array)
         first = len(PARAMETERS) + len(COUNTERS)
+        self._room_lacking = _room_entry()
         self.report = self.runs.view(np.int64)[first : first + len(REPORT)]
         """(3,) int64: the REPORT fields of the record."""
 
     def _put(self, name: str, array: NDArray[Any]) -> None:
-        self.arrays[name] = array = np.ascontiguousarray(array, ARRAYS[name])
+        self.arrays[name] = array = np.ascontiguousarray(array, ARRAYS[name].dtype)
         self.runs[f"{name}_at"], self.runs[f"{name}_n"] = array.ctypes.data, len(array)
 
     def __getitem__(self, scalar: str) -> int:
@@ -67,15 +64,21 @@ class State:
         So have their rows in the event log: what ended before ``now_ps``, the time of that step,
         is handed on if the log is full.
         """
-        room = len(self.messages) - self.arrays["messages_marks"][USED]
-        most_sent = len(self.arrays["outbox"])
-        most = min(most_sent, self["rays_left"] + 2 * len(self.pes))
-        if room < most:
-            self._grow("messages", most_sent)
+        most = self._room_lacking(self.runs)
+        if most == 0:
+            return
+        if len(self.messages) - self.arrays["message_marks"][USED] < most:
+            self._grow("messages", 2 * len(self.messages) + len(self.arrays["outbox"]))
         if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
             self.runs["n_logged"] = hand_on(self._logged(), now_ps, self.log)
             if len(self.arrays["log"]) - self["n_logged"] < most + 2 + LOG_ROWS:
-                self._grow("log", 0)
+                self._grow("log", 2 * len(self.arrays["log"]))
+
+    def ensure_heap(self) -> None:
+        """See to it that the heap has a place for every message and an instant of every PE."""
+        needed = len(self.messages) + len(self.pes) + 1
+        if len(self.arrays["heap"]) < needed:
+            self._grow("heap", needed)
 
     def close_log(self) -> None:
         """Hand on what is left of the event log."""
@@ -104,12 +107,35 @@ class State:
     def _logged(self) -> NDArray[np.void]:
         return self.arrays["log"][: self["n_logged"]]
 
-    def _grow(self, name: str, more: int) -> None:
-        """Double an array, and a little more."""
+    def _grow(self, name: str, length: int) -> None:
+        """Make an array longer."""
         before = self.arrays[name]
-        bigger = np.zeros(2 * len(before) + more, before.dtype)
-        bigger[: len(before)] = before
-        self._put(name, bigger)
+        longer = np.zeros(length, before.dtype)
+        longer[: len(before)] = before
+        self._put(name, longer)
+
+
+@kernel
+def room_lacking(s: Run) -> int:
+    """How many messages one more step may send, if there might be no room for them; else 0.
+
+    A step sends no more than a message for each ray that is left, and a batch and a load to each
+    PE; in the log each has a row, and so has what the step does before.
+    """
+    most = min(s.outbox_n, s.rays_left + 2 * s.processors)
+    if s.messages_n - message_marks(s)[USED] < most or (s.logs and s.log_n - s.n_logged < most + 2):
+        return most
+    return 0
+
+
+@njit
+def _room_lacking(runs: NDArray[np.void]) -> int:
+    return room_lacking(runs[0])
+
+
+@cache
+def _room_entry() -> Callable[..., int]:
+    return entry_point(_room_lacking, np.zeros(1, RUN))
 
 
 # --- the state of a machine that stands still, in words ---

@@ -6,6 +6,7 @@ import numpy as np
 
 from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import Machine
+from simmpp.machine.topology import topology_of
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.workload.workload import Workload
 
@@ -73,13 +74,13 @@ def _longest_dispatch_ps(workload: Workload, machine: Machine) -> int:
 
 
 def _longest_flight_ps(workload: Workload, machine: Machine) -> int:
-    """The largest message from one end of the torus to the other."""
+    """The largest message from one end of the network to the other."""
     links = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
     rates = [rate for rate in links if rate]
     n_bytes = _largest_payload_bytes(workload, machine) + machine.header_bytes
     transfer_ps = n_bytes * PS_PER_S // min(rates) if rates else 0
-    diameter = sum(size // 2 for size in machine.shape)
-    return machine.latency_ps + diameter * machine.hop_latency_ps + transfer_ps
+    hops_ps = topology_of(machine).diameter * machine.hop_latency_ps
+    return machine.latency_ps + hops_ps + transfer_ps
 
 
 def beyond_the_clock() -> ConfigError:

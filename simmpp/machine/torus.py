@@ -15,7 +15,10 @@ that come at the same instant are served by (source, send number).
 
 from __future__ import annotations
 
-from simmpp.common.compiled import kernel
+from dataclasses import dataclass
+from math import prod
+
+from simmpp.common.compiled import kernel, njit
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
 """What messages wait for: nothing, or links and ports."""
@@ -27,19 +30,39 @@ DIRECTIONS = ("+x", "-x", "+y", "-y", "+z", "-z")
 """Of a PE's links, in the order of their rows."""
 
 
-@kernel
-def injection_port(pe: int) -> int:
-    """Row of the port through which a PE's messages enter the network."""
-    return pe * ROWS_PER_PE + PORTS
+@dataclass(frozen=True)
+class Torus:
+    """A torus as a ``topology``."""
+
+    sizes: tuple[int, int, int]
+    """PEs along x, y, z; PE k = x + X (y + Y z)."""
+
+    def __str__(self) -> str:
+        return " x ".join(map(str, self.sizes))
+
+    @property
+    def pe_count(self) -> int:
+        """PEs that it joins."""
+        return prod(self.sizes)
+
+    @property
+    def n_links(self) -> int:
+        """Links and ports that serve one message at a time."""
+        return ROWS_PER_PE * self.pe_count
+
+    @property
+    def diameter(self) -> int:
+        """Most links between two PEs."""
+        return sum(size // 2 for size in self.sizes)
 
 
 @kernel
-def ejection_port(pe: int) -> int:
-    """Row of the port through which messages leave the network to a PE."""
-    return pe * ROWS_PER_PE + PORTS + 1
+def port(pe: int, out: int) -> int:
+    """Row of the port through which messages enter the network from a PE (0) or leave it (1)."""
+    return pe * ROWS_PER_PE + PORTS + out
 
 
-@kernel
+@njit
 def link_towards(shape: tuple[int, int, int], here: int, destination: int) -> tuple[int, int]:
     """Row of the link that leads from a PE to another one's, and the PE behind that link.
 
@@ -88,7 +111,7 @@ def ring_distance(size: int, a: int, b: int) -> int:
     return min(forward, size - forward)
 
 
-@kernel
+@njit
 def hops(x_size: int, y_size: int, z_size: int, source: int, destination: int) -> int:
     """Links that a message crosses the shortest way round; PE k = x + X (y + Y z)."""
     source_row, destination_row = source // x_size, destination // x_size

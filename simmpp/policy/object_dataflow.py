@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from simmpp.policy.rules import DataflowPolicy, ask_rule
+from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.view import View
 
 
-@ask_rule
-def at_once(load: int, waiting: int, nothing_else: int) -> bool:
+def at_once(view: View) -> bool:
     """Ask for every missing object as soon as one ray needs it."""
     return True
 
@@ -15,5 +15,4 @@ OBJECT_DATAFLOW = DataflowPolicy(
     name="object",
     source="Nebel 1998, section 2.1; Badouel & Priol 1990, Green & Paddon 1990",
     may_ask=at_once,
-    ask_at_least=1,
 )

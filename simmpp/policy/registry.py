@@ -14,5 +14,7 @@ POLICIES: dict[str, DataflowPolicy] = {
     "concurrent": CONCURRENT_DATAFLOW,
     "replicated": REPLICATED,
 }
+REFERENCE, CEILING = "object", "replicated"
+"""Run with every point: what profits are measured against, and no dataflow at all."""
 DEFAULT_POLICY = "concurrent"
 """What a configuration that names none compares with object dataflow."""

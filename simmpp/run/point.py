@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import TypedDict
+from dataclasses import dataclass, replace
 
 from simmpp.common.places import misplaced
 from simmpp.config.config import Config
 from simmpp.engine.record.log import Sink
+from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.machine.limits import total_compute_ps
@@ -18,11 +18,8 @@ from simmpp.methods.table import SIMULATE
 from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.registry import CEILING, POLICIES, REFERENCE
 from simmpp.workload.workload import Workload
-
-REFERENCE, CEILING = "object", "replicated"
-"""Run with every point: what profits are measured against, and no dataflow at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,44 +86,28 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
 
 
-class Records(TypedDict):
-    """What a run notes besides its counters."""
-
-    log: bool | Sink
-    record_tests: bool
-    record_counters: bool
-    record_hops: bool
-
-
 def run_point(
     point: Point,
     *,
-    record_tests: bool = False,
-    record_counters: bool = False,
+    record: Recording = NOTHING,
     log_of: Callable[[PolicyParameters], Sink | None] = lambda _: None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
     """Simulate the policies one after the other, yielding each as it is finished.
 
-    ``record_counters`` records the links crossed for each ray too. ``log_of`` gives what gets the
-    event log of a policy's run, if anything. ``progress(title, rays left)`` is
-    called now and then.
+    ``log_of`` gives what gets the event log of a policy's run, if anything. ``progress(title, rays
+    left)`` is called now and then.
     """
     for parameters, named in policies_of(point.config):
-        records: Records = {
-            "log": log_of(parameters) or False,
-            "record_tests": record_tests,
-            "record_counters": record_counters,
-            "record_hops": record_counters,
-        }
-        yield _run(point, parameters, named, records, progress)
+        recording = replace(record, log=log_of(parameters) or False)
+        yield _run(point, parameters, named, recording, progress)
 
 
 def _run(
     point: Point,
     parameters: PolicyParameters,
     named: bool,
-    records: Records,
+    recording: Recording,
     progress: Callable[[str, int], None] | None,
 ) -> PolicyRun:
     def report(rays_left: int) -> None:
@@ -142,8 +123,8 @@ def _run(
         parameters,
         engine=settings.engine,
         ready_order=settings.ready_order,
+        record=recording,
         progress=report,
-        **records,
     )
     return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 

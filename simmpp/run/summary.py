@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.machine.topology import topology_of
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 
@@ -32,7 +33,7 @@ def heading(point: Point) -> str:
     """Two lines that say what was simulated."""
     workload, machine, placement = point.workload, point.machine, point.placement
     rows, columns = workload.picture
-    shape = " x ".join(map(str, machine.shape))
+    network = topology_of(machine)
     memory = point.config.memory
     room = (
         format_bytes(memory.bytes)
@@ -43,7 +44,7 @@ def heading(point: Point) -> str:
         f"{workload.name}: {columns} x {rows} primary rays, "
         f"{counted(workload.n_rays, 'ray')} in all, "
         f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
-        f"{machine.name}: {counted(machine.processors, 'PE')} ({shape}), memory {room} on each "
+        f"{machine.name}: {counted(machine.processors, 'PE')} ({network}), memory {room} on each "
         f"(effectively {placement.effective_fraction:.4g}), seed {point.seed}"
     )
 

@@ -13,8 +13,7 @@ from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
-from simmpp.run.point import CEILING
+from simmpp.policy.registry import CEILING, POLICIES
 from simmpp.sweeps.grid import GridPoint
 
 
@@ -74,7 +73,7 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     ignored += [] if rules.sends else ["min_load", "batch"]
     ignored += [] if rules.knows_loads else ["load_info"]
     ignored += [] if rules.asks else ["merge_requests"]
-    ignored += [] if rules.asks and rules.ask_at_least is None else ["ask_at_least"]
+    ignored += [] if rules.asks and rules.ask_from == "ask_at_least" else ["ask_at_least"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
 

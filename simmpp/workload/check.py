@@ -47,7 +47,7 @@ def _problem_of_rays(workload: Workload) -> str:
     if (parents[:first] != -1).any() or (pixels[:first] != numbers[:first]).any():
         return "a primary ray has a parent or another's pixel"
     offsets = workload.child_offsets
-    if not _is_cut(offsets, first, n):
+    if not is_cut(offsets, n, first, n):
         return "child_offsets do not cut the rays"
     if (parents[first:] != np.repeat(numbers, np.diff(offsets))).any():
         return "parents and child_offsets disagree"
@@ -62,7 +62,7 @@ def _problem_of_rays(workload: Workload) -> str:
 
 def _problem_of_itineraries(workload: Workload) -> str:
     offsets, objects, hits = workload.itinerary_offsets, workload.itinerary_objects, workload.hits
-    if not _is_cut(offsets, 0, len(objects)):
+    if not is_cut(offsets, workload.n_rays, 0, len(objects)):
         return "itinerary_offsets do not cut the itineraries"
     for name, ids, least in (("itinerary_objects", objects, 0), ("hits", hits, -1)):
         if len(ids) and (ids.min() < least or ids.max() >= workload.n_objects):
@@ -83,8 +83,11 @@ def _problem_of_itineraries(workload: Workload) -> str:
     return ""
 
 
-def _is_cut(offsets: NDArray[np.signedinteger], first: int, last: int) -> bool:
-    return bool(offsets[0] == first and offsets[-1] == last and (np.diff(offsets) >= 0).all())
+def is_cut(offsets: NDArray[np.signedinteger], n: int, first: int, last: int) -> bool:
+    """Do n + 1 offsets cut the numbers first ... last - 1 into n parts?"""
+    if len(offsets) != n + 1 or offsets[0] != first or offsets[-1] != last:
+        return False
+    return bool((offsets[1:] >= offsets[:-1]).all())
 
 
 def _rays_that_test_their_hit(workload: Workload) -> NDArray[np.int64]:

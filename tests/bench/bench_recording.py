@@ -14,10 +14,10 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
 
 import simmpp
 from simmpp.engine.record.log import Sink
+from simmpp.engine.record.recording import Recording
 from simmpp.report.timeline.recorder import SUFFIXES, TimelineRecorder
 from simmpp.run.point import PolicyRun
 
@@ -30,24 +30,24 @@ def main(pixels: int = 512, processors: int = 64) -> None:
     machine = simmpp.make_machine("t3e", processors=processors)
     placement = simmpp.place(workload, processors, simmpp.Memory(), simmpp.PlacementRules(), seed=0)
 
-    def run(policy: simmpp.PolicyParameters, **options: Any) -> tuple[float, simmpp.Result]:
+    def run(policy: simmpp.PolicyParameters, noted: Recording) -> tuple[float, simmpp.Result]:
         began_s = time.process_time()
-        result = simmpp.simulate(workload, machine, placement, policy, **options)
+        result = simmpp.simulate(workload, machine, placement, policy, record=noted)
         return time.process_time() - began_s, result
 
-    records: dict[str, dict[str, Any]] = {
-        "nothing": {},
-        "event log": {"log": ignore},
-        "counters": {"record_counters": True},
-        "counters, hops of rays": {"record_counters": True, "record_hops": True},
-        "nothing again": {},
+    records = {
+        "nothing": Recording(),
+        "event log": Recording(log=ignore),
+        "counters": Recording(counters=True),
+        "counters, hops of rays": Recording(counters=True, hops=True),
+        "nothing again": Recording(),
     }
     for name in ("object", "ray", "concurrent"):
         policy = simmpp.PolicyParameters(name)
         cpu_s: dict[str, list[float]] = {record: [] for record in records}
         for _ in range(REPEATS):
-            for record, options in records.items():
-                cpu_s[record].append(run(policy, **options)[0])
+            for record, noted in records.items():
+                cpu_s[record].append(run(policy, noted)[0])
         base_s = min(cpu_s["nothing"])
         costs = [f"{r} {min(s) / base_s - 1:+.1%}" for r, s in cpu_s.items()][1:]
         print(f"{name:10} {base_s:.3f} s; {', '.join(costs)}", flush=True)
@@ -56,7 +56,7 @@ def main(pixels: int = 512, processors: int = 64) -> None:
                 path = Path(folder, f"timeline{suffix}")
                 recorder = TimelineRecorder(path, machine)
                 sink: Sink = recorder.begin(policy)
-                spent_s, result = run(policy, log=sink)
+                spent_s, result = run(policy, Recording(log=sink))
                 recorder.end(PolicyRun(policy, result, named=True, wall_s=0.0))
                 recorder.close()
                 print(f"  {suffix:8} {path.stat().st_size / 1e6:7.1f} MB, {spent_s:.2f} CPU s")

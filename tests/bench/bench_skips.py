@@ -23,7 +23,7 @@ import numpy as np
 import simmpp
 from simmpp.config.config import config_from_mapping
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import WANT
+from simmpp.engine.arrays.layout import MISS
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state
 from simmpp.sweeps.plan import plan_of
@@ -128,11 +128,10 @@ def no_state(spec: str) -> Iterator[Row]:
     rules = simmpp.Memory(), simmpp.PlacementRules()
     placement = simmpp.place(workload, PROCESSORS, *rules, seed=0)
     machine = simmpp.make_machine(processors=PROCESSORS)
-    options = {"ready_order": "depth-first", "record_tests": False}
-    state = new_state(workload, machine, placement, parameters, **options)
+    state = new_state(workload, machine, placement, parameters, ready_order="depth-first")
     CompiledRun(state).run()
-    touched = int(state.arrays["wants_marks"][USED]) * WANT.itemsize
-    dense = PROCESSORS * workload.n_objects * WANT.itemsize
+    touched = int(state.arrays["miss_marks"][USED]) * MISS.itemsize
+    dense = PROCESSORS * workload.n_objects * MISS.itemsize
     yield "state of (PE, object) pairs in use only", spec, "bytes", touched, dense
 
 

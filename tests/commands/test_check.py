@@ -15,7 +15,7 @@ from click.testing import Result
 
 from simmpp.machine import presets
 from simmpp.policy.registry import POLICIES
-from simmpp.policy.rules import send_rule
+from simmpp.policy.view import View
 from simmpp.studies.check import baseline
 
 REPOSITORY = Path(__file__).parents[2]
@@ -82,15 +82,13 @@ def slow_sends(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(presets, "load_preset", lambda name: changed)
 
 
-def to_the_more_loaded(
-    load: int, known_load: int, age_ps: int, waiting: int, nothing_else: int, min_load: int
-) -> bool:
-    return load <= min_load or load <= known_load
+def to_the_more_loaded(view: View) -> bool:
+    return view.load <= view.min_load or view.load <= view.known_load
 
 
 def invert_rule(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the concurrent policy send where it would not, and the other way round."""
-    inverted = dataclasses.replace(POLICIES["concurrent"], may_send=send_rule(to_the_more_loaded))
+    inverted = dataclasses.replace(POLICIES["concurrent"], may_send=to_the_more_loaded)
     monkeypatch.setitem(POLICIES, "concurrent", inverted)
 
 

@@ -12,12 +12,12 @@ from implementations import result_of, run
 from oracles.costs import network_ps, transfer_ps
 from oracles.machine import Simulation
 from oracles.network import Network
-from oracles.rules import RULES
 
 from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.machine import UNLIMITED
 from simmpp.machine.torus import LINKS, NO_CONTENTION
+from simmpp.policy.registry import POLICIES
 
 many = settings(max_examples=30, deadline=None, derandomize=True)
 
@@ -40,7 +40,7 @@ def test_a_run_in_which_no_message_waits_is_the_one_without_contention(engine: s
 
 def waits_ps(case: Case) -> set[int]:
     """What the messages of the oracle's run waited; one that takes no time counts as waiting."""
-    machine, rules, network = case.machine, RULES[case.policy.name], Network(case.machine)
+    machine, rules, network = case.machine, POLICIES[case.policy.name], Network(case.machine)
     parts = (case.workload, machine, case.placement, case.policy, case.ready_order, rules)
     simulation = Simulation(*parts)
     simulation.run()

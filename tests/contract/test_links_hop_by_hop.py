@@ -12,11 +12,11 @@ from by_hand import MACHINE
 from oracles.hop_by_hop import HopByHop, Sent
 from oracles.machine import Simulation
 from oracles.network import Network
-from oracles.rules import RULES
 from traffic import arrivals_ps
 
 from simmpp.machine.machine import Machine
 from simmpp.machine.torus import LINKS
+from simmpp.policy.registry import POLICIES
 
 SHAPES = ((2, 1, 1), (5, 1, 1), (4, 4, 1), (3, 3, 3), (4, 3, 2))
 
@@ -52,7 +52,7 @@ def test_arrivals_of_whole_runs_are_equal() -> None:
     for seed in range(60):
         case = random_case(seed)
         machine = replace(case.machine, contention=LINKS)
-        rules, network = RULES[case.policy.name], Network(machine)
+        rules, network = POLICIES[case.policy.name], Network(machine)
         parts = (case.workload, machine, case.placement, case.policy, case.ready_order, rules)
         simulation = Simulation(*parts)
         simulation.run()

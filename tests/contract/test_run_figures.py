@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, cast
 
 import matplotlib
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
 from simmpp.engine.arrays.layout import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, SEND, SIZES
+from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.machine import CopyCost, Machine, TestCost
@@ -34,12 +36,14 @@ many = settings(max_examples=40, deadline=None, derandomize=True)
 def seen(case: Case, log: bool = False) -> tuple[Result, Motion]:
     """A run and the data of its pictures; and its event log, from another run."""
     point = Point(cast(Any, None), case.workload, case.machine, case.placement, seed=0)
-    options: dict[str, Any] = {"ready_order": case.ready_order, "record_hops": True}
-    options["record_counters"] = True
+    options: dict[str, Any] = {"ready_order": case.ready_order}
+    noted = Recording(counters=True, hops=True)
     arguments = (case.workload, case.machine, case.placement, case.policy)
-    result = simulate(*arguments, **options)
+    result = simulate(*arguments, **options, record=noted)
     motion = motion_of(point, PolicyRun(case.policy, result, named=True, wall_s=0.0))
-    return simulate(*arguments, **options, log=True) if log else result, motion
+    if not log:
+        return result, motion
+    return simulate(*arguments, **options, record=replace(noted, log=True)), motion
 
 
 @given(case=cases())
@@ -154,8 +158,8 @@ def counted_run(case: Case, engine: str) -> NDArray[np.void]:
     """The event log of a run, which says the same as its counters."""
     options: dict[str, Any] = {"ready_order": case.ready_order, "engine": engine}
     arguments = (case.workload, case.machine, case.placement, case.policy)
-    result = simulate(*arguments, **options, log=True, record_counters=True)
-    alone = simulate(*arguments, **options, record_counters=True).counters
+    result = simulate(*arguments, **options, record=Recording(log=True, counters=True))
+    alone = simulate(*arguments, **options, record=Recording(counters=True)).counters
     counted = result.counters
     assert counted is not None and alone is not None and result.log is not None
     for name, expected in counters_of(case, result.log, result.makespan_ps).items():

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import simmpp
+from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.placement import Owners, Pixels, Residents
 from simmpp.policy.registry import POLICIES
@@ -40,7 +41,12 @@ def test_the_tests_of_every_run_make_the_picture(spec: str) -> None:
         for policy in POLICIES_AND_INFO:
             for engine in ENGINES if n % 16 == 0 else ("compiled",):
                 result = simmpp.simulate(
-                    workload, machine, placement, policy, engine=engine, record_tests=True
+                    workload,
+                    machine,
+                    placement,
+                    policy,
+                    engine=engine,
+                    record=Recording(tests=True),
                 )
                 assert result.tested_rays is not None
                 assert result.tested_objects is not None

@@ -176,7 +176,7 @@ def test_objects_that_no_itinerary_names_take_no_state() -> None:
         got, expected = run(bigger), run(case)
         assert got == expected
         states = [state_of(each) for each in (case, bigger)]
-        for name in ("wants_marks", "partners_marks"):
+        for name in ("miss_marks", "peer_marks"):
             few, many = (state.arrays[name][USED] for state in states)
             assert few == many
 
@@ -205,7 +205,6 @@ def state_of(case: Case) -> State:
         case.placement,
         case.policy,
         ready_order=case.ready_order,
-        record_tests=False,
     )
     compiled_engine.CompiledRun(state).run()
     return state

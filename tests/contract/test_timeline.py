@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from simmpp.engine import initial as start
 from simmpp.engine import state
 from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
+from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.messages import LOAD
@@ -37,7 +38,7 @@ def timeline_of(
             case.policy,
             engine=engine,
             ready_order=case.ready_order,
-            log=lambda rows: parts.append(timeline.add(rows.copy())),
+            record=Recording(log=lambda rows: parts.append(timeline.add(rows.copy()))),
         )
     return result, [*parts, timeline.end(result.makespan_ps)]
 
@@ -153,11 +154,12 @@ def test_portions_are_the_whole_log(engine: str, case: Case) -> None:
     portions: list[NDArray[np.void]] = []
     arguments = (case.workload, case.machine, case.placement, case.policy)
     options = {"engine": engine, "ready_order": case.ready_order}
-    whole = simulate(*arguments, **options, log=True).log
+    whole = simulate(*arguments, **options, record=Recording(log=True)).log
     with pytest.MonkeyPatch.context() as patch:
         for module in (start, state):
             patch.setattr(module, "LOG_ROWS", 1)
-        simulate(*arguments, **options, log=lambda rows: portions.append(rows.copy()))
+        noted = Recording(log=lambda rows: portions.append(rows.copy()))
+        simulate(*arguments, **options, record=noted)
     assert whole is not None
     assert sorted(np.concatenate(portions).tolist()) == sorted(whole.tolist())
     ends = [int(rows["end_ps"].max()) for rows in portions if len(rows)]

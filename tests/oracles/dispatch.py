@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from oracles.rules import Rule, View, minimum_load
+from oracles.costs import hops_from
+from oracles.rules import View, numbers
 from oracles.state import PE
 from oracles.world import World
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
+from simmpp.policy.rules import Rule
 
 
 class Dispatch(World):
@@ -37,23 +39,27 @@ class Dispatch(World):
 
     def send_rays(self, clock: int, pe: PE, nothing_else: bool, may_send: Rule) -> int:
         """One message to each owner that the rule allows."""
-        minimum = minimum_load(self.policy, self.workload.n_primaries, self.nb)
         for owner in self.others(pe):
             rays = self.sendable(pe, owner)
-            if not rays or not (len(rays) >= self.policy.batch or nothing_else):
-                continue
             known, age = self.known_load(clock, pe, owner)
-            if not may_send(View(pe.load, len(rays), nothing_else, minimum, known, age)):
+            seen = {"nothing_else": nothing_else, "known_load": known, "age_ps": age}
+            if not rays or not may_send(self.view(pe, owner, waiting=len(rays), **seen)):
                 continue
             pe.unfile(rays)
             size = len(rays) * self.machine.ray_bytes
             clock = self.send(clock, pe, RAYS, owner, size, rays=tuple(rays))
         return clock
 
-    def known_load(self, clock: int, pe: PE, owner: int) -> tuple[Fraction | None, int]:
+    def view(self, pe: PE, owner: int, **seen: int | Fraction) -> View:
+        """What a rule of this PE sees when it decides about something that another one owns."""
+        hops = hops_from(self.machine.shape, pe.number)[owner] if self.rules.knows_hops else 0
+        own = numbers(self.policy, self.workload.n_primaries, self.nb)
+        return View(load=pe.load, hops=hops, **own, **seen)
+
+    def known_load(self, clock: int, pe: PE, owner: int) -> tuple[Fraction, int]:
         """What a PE knows of the owner's load, and for how long it has."""
         if self.policy.load_info == "none":
-            return None, clock
+            return Fraction(-1), clock
         if self.policy.load_info == "exact":
             return Fraction(self.pes[owner].ended_load), 0
         return pe.known_load[owner], clock - pe.heard[owner]
@@ -67,11 +73,11 @@ class Dispatch(World):
 
     def ask(self, clock: int, pe: PE, nothing_else: bool, may_ask: Rule) -> int:
         """Requests for each object that the rule allows."""
-        at_least = self.rules.ask_at_least or self.policy.ask_at_least
         oldest = {o: self.unasked(pe, o) for o in {o for _, o, _ in pe.waiting}}
+        seen = {"nothing_else": nothing_else, "known_load": -1, "age_ps": 0}
         for obj in sorted((o for o in oldest if oldest[o]), key=lambda o: oldest[o][0]):
-            n = len(oldest[obj])
-            if not (n >= at_least or nothing_else) or not may_ask(View(pe.load, n, nothing_else)):
+            view = self.view(pe, self.owners[obj], waiting=len(oldest[obj]), **seen)
+            if not may_ask(view):
                 continue
             for _ in oldest[obj][:1] if self.policy.merge_requests else oldest[obj]:
                 size = self.machine.request_bytes
@@ -85,6 +91,6 @@ class Dispatch(World):
             return clock
         for other in self.others(pe):
             silence = clock - pe.last_departure[other]
-            if other in pe.partners and silence >= self.policy.refresh_ps:
+            if other in pe.peers and silence >= self.policy.refresh_ps:
                 clock = self.send(clock, pe, LOAD, other, 0)
         return clock

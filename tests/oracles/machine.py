@@ -1,7 +1,8 @@
 """The simulated machine in plain Python: every activity of every PE, step by step.
 
 One heap of instants with the order of ties written out; each step searches all rays, objects
-and PEs instead of keeping counts. Nothing of it is shared with the package but its data classes.
+and PEs instead of keeping counts. Nothing of it is shared with the package but its data
+classes and the rules of policies, which it asks about all that waits, enough or not.
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from typing import Any
 from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
-from oracles.rules import RULES, Rules
 from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.registry import POLICIES
+from simmpp.policy.rules import DataflowPolicy
 from simmpp.workload.workload import Workload
 
 
@@ -81,7 +83,7 @@ class Simulation(Dispatch):
         pe.known_load[message.source] = Fraction(message.load)
         pe.heard[message.source] = clock
         if message.kind in (OBJECT, RAYS):
-            pe.partners.add(message.source)
+            pe.peers.add(message.source)
         if message.kind == OBJECT:
             self.release(pe, message.obj)
         elif message.kind == RAYS:
@@ -170,10 +172,10 @@ def simulate(
     placement: Placement,
     policy: PolicyParameters,
     ready_order: str = "depth-first",
-    rules: Rules | None = None,
+    rules: DataflowPolicy | None = None,
 ) -> Outcome:
     """Run a workload on a machine, under a policy or other rules."""
-    rules = rules or RULES[policy.name]
+    rules = rules or POLICIES[policy.name]
     simulation = Simulation(workload, machine, placement, policy, ready_order, rules)
     simulation.run()
     has = {"send": rules.may_send, "ask": rules.may_ask}

@@ -49,7 +49,7 @@ class PE:
     instants: int = 0
     sends: int = 0
     ranks: int = 0
-    partners: set[int] = field(default_factory=set)
+    peers: set[int] = field(default_factory=set)
     last_departure: Counter[int] = field(default_factory=Counter)
     ended_load: int = 0
     """Load at the end of the last ended activity."""

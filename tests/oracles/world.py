@@ -11,12 +11,12 @@ from typing import Any
 from oracles.costs import copy_ps, network_ps
 from oracles.ledger import Ledger
 from oracles.network import Network
-from oracles.rules import Rules
 from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.rules import DataflowPolicy
 from simmpp.workload.workload import Workload
 
 
@@ -29,7 +29,7 @@ class World:
     placement: Placement
     policy: PolicyParameters
     ready_order: str
-    rules: Rules
+    rules: DataflowPolicy
     queue: list[tuple[Any, ...]] = field(default_factory=list)
     """A heap of (key, what happens, to whom); keys are the order of ties and never equal:
     arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
@@ -56,7 +56,7 @@ class World:
         resident = {o for o, owner in enumerate(self.owners) if owner == k}
         first, end = (int(i) for i in self.placement.replica_offsets[k : k + 2])
         resident |= {int(o) for o in self.placement.replica_objects[first:end]}
-        if self.policy.name == "replicated":
+        if self.rules.all_resident:
             resident = set(range(len(self.owners)))
         rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
         share = Fraction(self.workload.n_primaries, self.nb)
@@ -99,7 +99,7 @@ class World:
         pe.sends += 1
         pe.last_departure[destination] = clock
         if kind in (OBJECT, RAYS):
-            pe.partners.add(destination)
+            pe.peers.add(destination)
         self.ledger.sent.append(message)
         self.ledger.did(pe, begin, "send", clock, message)
         if self.machine.contention == "links":

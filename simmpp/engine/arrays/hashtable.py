@@ -2,7 +2,8 @@
 
 Of the nb x N pairs (PE, object) and the nb x nb pairs (PE, PE) only those that something is known
 about have a row, so memory grows with what happens, not with the size of the machine. The arrays
-are reserved at an upper bound, but the system gives memory only to pages that were touched.
+are reserved at an upper bound, but the system gives memory only to pages that were touched. What
+is empty is all zeros, so nothing has to be written before: hence "plus 1" below.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit_reading as njit
-from simmpp.engine.arrays.layout import NONE
+from simmpp.common.compiled import kernel
+from simmpp.engine.arrays.layout import NONE, Row
 
 FREE, USED = 0, 1
 
@@ -26,7 +27,7 @@ class Table(NamedTuple):
     rows: NDArray[np.void]
     """(capacity,) records with at least the fields ``key`` (int64) and ``chain`` (int32)."""
     marks: NDArray[np.int32]
-    """(2,) int32: head of the list of freed rows, and number of rows ever used."""
+    """(2,) int32: head of the list of freed rows, plus 1, 0 for none; number of rows ever used."""
 
 
 class Lists(NamedTuple):
@@ -38,14 +39,14 @@ class Lists(NamedTuple):
     """(2 * items,) int32: previous and next item of each."""
 
 
-@njit
+@kernel
 def _bucket(table: Table, key: int) -> np.int64:
     # Fibonacci hashing: the upper bits of key * 2^64 / golden ratio.
     mixed = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
     return np.int64((mixed >> np.uint64(33)) & np.uint64(table.buckets.size - 1))
 
 
-@njit
+@kernel
 def find(table: Table, key: int) -> int:
     """The row of ``key``, or NONE."""
     row = table.buckets[_bucket(table, key)] - 1
@@ -54,7 +55,7 @@ def find(table: Table, key: int) -> int:
     return row
 
 
-@njit
+@kernel
 def add(table: Table, key: int) -> int:
     """A new row for ``key``, which must not have one; its other fields are the caller's to set."""
     row = take(table.rows, table.marks)
@@ -65,26 +66,26 @@ def add(table: Table, key: int) -> int:
     return row
 
 
-@njit
+@kernel
 def remove(table: Table, row: int) -> None:
     """Forget a row; its place is used again."""
     bucket = _bucket(table, table.rows[row].key)
-    at = table.buckets[bucket] - 1
-    if at == row:
+    before = table.buckets[bucket] - 1
+    if before == row:
         table.buckets[bucket] = table.rows[row].chain + 1
     else:
-        while table.rows[at].chain != row:
-            at = table.rows[at].chain
-        table.rows[at].chain = table.rows[row].chain
+        while table.rows[before].chain != row:
+            before = table.rows[before].chain
+        table.rows[before].chain = table.rows[row].chain
     give_back(table.rows, table.marks, row)
 
 
-@njit
+@kernel
 def take(rows: NDArray[np.void], marks: NDArray[np.int32]) -> int:
     """A free place among ``rows``; freed places are linked through ``chain``."""
-    row = marks[FREE]
+    row = marks[FREE] - 1
     if row >= 0:
-        marks[FREE] = rows[row].chain
+        marks[FREE] = rows[row].chain + 1
         return row
     row = marks[USED]
     if row >= rows.size:
@@ -93,26 +94,37 @@ def take(rows: NDArray[np.void], marks: NDArray[np.int32]) -> int:
     return row
 
 
-@njit
+@kernel
 def give_back(rows: NDArray[np.void], marks: NDArray[np.int32], row: int) -> None:
     """Make a place free again."""
-    rows[row].chain = marks[FREE]
-    marks[FREE] = row
+    rows[row].chain = marks[FREE] - 1
+    marks[FREE] = row + 1
 
 
-@njit
+@kernel
+def link(rows: NDArray[np.void], ends: Row, row: int) -> None:
+    """Put a row at the end of a simple list: ``ends`` has its first and last, rows their next."""
+    rows[row].next = NONE
+    if ends.first == NONE:
+        ends.first = row
+    else:
+        rows[ends.last].next = row
+    ends.last = row
+
+
+@kernel
 def first(lists: Lists, which: int) -> int:
     """The first item of list ``which``, or NONE."""
     return lists.ends[2 * which] - 1
 
 
-@njit
+@kernel
 def following(lists: Lists, item: int) -> int:
     """The item after ``item`` in its list, or NONE."""
     return lists.links[2 * item + 1]
 
 
-@njit
+@kernel
 def append(lists: Lists, which: int, item: int) -> None:
     """Put ``item`` at the end of list ``which``."""
     last = lists.ends[2 * which + 1] - 1
@@ -125,7 +137,7 @@ def append(lists: Lists, which: int, item: int) -> None:
     lists.ends[2 * which + 1] = item + 1
 
 
-@njit
+@kernel
 def unlink(lists: Lists, which: int, item: int) -> None:
     """Take ``item`` out of list ``which``, wherever it stands."""
     before, after = lists.links[2 * item], lists.links[2 * item + 1]
@@ -139,16 +151,17 @@ def unlink(lists: Lists, which: int, item: int) -> None:
         lists.ends[2 * which + 1] = before + 1
 
 
-@njit
+@kernel
 def clear(lists: Lists, which: int) -> None:
     """Empty list ``which``; its items are in no list then."""
     lists.ends[2 * which] = 0
     lists.ends[2 * which + 1] = 0
 
 
-@njit
+@kernel
 def sort_by_key(keys: NDArray[np.int64], items: NDArray[np.int64], n: int) -> None:
     """Sort the first n items by their distinct keys, in place (Shell sort, Ciura's gaps)."""
+    # Keys are distinct, so it does not matter that Shell sort is not stable.
     for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):
         for i in range(gap, n):
             key, item = keys[i], items[i]

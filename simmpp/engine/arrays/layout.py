@@ -1,17 +1,162 @@
 """How the state of a run lies in memory: one record of scalars and of where its arrays are.
 
-The model gets this one record. Thirty arrays as arguments would be copied word by word at every
+The model gets this one record. Forty arrays as arguments would be copied word by word at every
 call between compiled functions; a record is one pointer.
+
+An example: ray 7 on PE 2 needs object 40 of 100, which PE 5 owns, and waits.
+
+    rays[7].next             NONE: it is the last that waits
+    misses[row]              of key 2 * 100 + 40: first = last = 7, n = 1, unasked = 1, requests = 0
+    miss_buckets             hashed by that key: where ``row`` is found
+    unasked_ends, _links     ``row`` in list 2 * 2 (or 2 * 2 + 1 from ``ask_from`` rays on)
+    peers[miss.peer]         of key 2 * nb + 5: sendable = 1, load = what PE 5 said last
+    pes[2].load              still counts the ray
+
+Once it is asked for, ``unasked`` is 0, ``requests`` 1 and the row in no such list; a REQUEST lies
+in ``messages``, and its place there in ``outbox``, from where an engine takes it on its way.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
+from numpy.typing import NDArray
 
-# --- how the counters of a run lie in memory: of bins of time, of pairs of PEs, of PEs ---
+from simmpp.machine.machine import Machine
+from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.policy.compiled_rules import VIEW
 
+Run = Any
+"""A RUN record; numba's type, which Python has no name for."""
+Row = Any
+"""A record of one of the arrays."""
+
+NONE = -1
+
+PE = np.dtype(
+    [
+        ("first", "i4"),  # list of ready rays, linked through RAY.next; NONE: empty
+        ("last", "i4"),
+        ("n_ready", "i8"),
+        ("load", "i8"),  # rays held: ready + waiting
+        ("settled_load", "i8"),  # load at the end of the last ended activity
+        ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
+        ("messages_sent", "i8"),
+        ("busy_until_ps", "i8"),
+        ("compute_ps", "i8"),
+        ("communication_ps", "i8"),
+        ("held_bytes", "i8"),  # resident and fetched objects
+        ("peak_rays", "i8"),
+        ("peak_bytes", "i8"),
+        ("peak_object_bytes", "i8"),  # of held_bytes
+        ("n_transient", "i4"),
+        ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
+    ],
+    align=True,
+)
+RAY = np.dtype(
+    [
+        ("tested", "i4"),  # objects of its itinerary that it has been tested against
+        ("next", "i4"),  # next ray of the list that this ray is in
+        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("hops", "i4"),  # with record_hops: links crossed for it
+    ],
+    align=True,
+)
+MISS = np.dtype(
+    [
+        ("key", "i8"),  # PE * N + object
+        ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
+        ("chain", "i4"),
+        ("first", "i4"),  # waiting rays, oldest first; NONE: none
+        ("last", "i4"),
+        ("n", "i4"),
+        ("unasked", "i4"),  # waiting rays that no request covers
+        ("requests", "i4"),  # in flight
+        ("pinned", "i4"),  # released rays that have not made their test yet
+        ("transient", "i4"),  # 1: in transient memory
+        ("peer", "i4"),  # row of the owner in ``peers``, if the policy sends
+        ("hops", "i4"),  # links to the owner, with record_hops
+    ],
+    align=True,
+)
+PEER = np.dtype(
+    [
+        ("key", "i8"),  # PE * nb + the other PE
+        ("load", "i8"),  # last heard; NONE if never
+        ("heard_ps", "i8"),
+        ("sent_ps", "i8"),  # departure of the last message to it, 0 if none
+        ("chain", "i4"),
+        ("sendable", "i4"),  # rays waiting for its objects that may be sent
+        ("exchanged", "i4"),  # 1: rays or objects went from one to the other
+    ],
+    align=True,
+)
+MESSAGE = np.dtype(
+    [
+        ("depart_ps", "i8"),
+        ("number", "i8"),  # the sender's send number
+        ("load", "i8"),  # the sender's, at packing, without the rays in the message
+        ("payload_bytes", "i8"),
+        ("arrival_ps", "i8"),
+        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
+        ("head_ps", "i8"),  # when its head is at the next link or port,
+        ("at", "i4"),  # and the PE where that is
+        ("destination", "i4"),
+        ("source", "i4"),
+        ("chain", "i4"),
+        ("next", "i4"),  # in the inbox
+        ("obj", "i4"),
+        ("first", "i4"),  # rays
+        ("last", "i4"),
+        ("n", "i4"),
+        ("kind", "i4"),  # NONE: a free place
+    ],
+    align=True,
+)
+COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
+"""Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
+
+EVENT = np.dtype(
+    [
+        ("time_ps", "i8"),  # when a message arrives, or the PE begins
+        ("end_ps", "i8"),  # when the PE is done, a message sent departs; of an arrival: time_ps
+        ("number", "i8"),  # the sender's send number; NONE if there is no message or it never left
+        ("payload_bytes", "i8"),
+        ("tests", "i8"),
+        ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
+        ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
+        ("rays", "i4"),  # in the message; finished by a COMPUTE
+        ("load", "i4"),  # of the PE, when it is done
+        ("ready", "i4"),  # rays of the load that are ready then; the others wait
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("kind", "i2"),  # of the message; NONE without one
+    ]
+)
+"""One row of the event log, a cache line."""
+
+EVENT_KEY = np.dtype(
+    [
+        ("time_ps", "i8"),
+        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or HEAD + source
+        ("number", "i8"),  # the sender's send number, or the PE's instants so far
+        ("message", "i8"),  # that arrives or whose head moves; NONE at an instant
+    ]
+)
+"""What is going to happen in the compiled event loop, and its place among the rest."""
+PROCESS = np.dtype(
+    [
+        ("first", "i4"),  # inbox of the PE, linked through MESSAGE.next; NONE: empty
+        ("last", "i4"),
+        ("instants", "i8"),
+        ("phase", "i4"),  # of the next instant
+        ("asleep", "i4"),
+    ]
+)
+"""A PE as the compiled event loop sees it."""
 
 BINS = 1024
 """Bins of time; a run fills more than half of them."""
@@ -42,192 +187,127 @@ SLICE = np.dtype(
 """What is counted of a PE when it works again, or the run is over: it may end before the work."""
 
 
-Run = Any
-"""A RUN record; numba's type, which Python has no name for."""
-Row = Any
-"""A record of one of the arrays."""
-
-NONE = -1
-
-PE = np.dtype(
-    [
-        ("ready_first", "i4"),  # list of ready rays, linked through RAY.next
-        ("ready_last", "i4"),
-        ("n_ready", "i8"),
-        ("load", "i8"),  # rays held: ready + waiting
-        ("settled_load", "i8"),  # load at the end of the last ended activity
-        ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
-        ("messages_sent", "i8"),
-        ("busy_until_ps", "i8"),
-        ("compute_ps", "i8"),
-        ("communication_ps", "i8"),
-        ("held_bytes", "i8"),  # resident and fetched objects
-        ("peak_rays", "i8"),
-        ("peak_bytes", "i8"),
-        ("peak_object_bytes", "i8"),  # of held_bytes
-        ("n_transient", "i4"),
-        ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
-    ],
-    align=True,
-)
-RAY = np.dtype(
-    [
-        ("tested", "i4"),  # objects of its itinerary that it has been tested against
-        ("next", "i4"),  # next ray of the list that this ray is in
-        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
-        ("hops", "i4"),  # with record_hops: links crossed for it
-    ],
-    align=True,
-)
-WANT = np.dtype(
-    [
-        ("key", "i8"),  # PE * N + object
-        ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
-        ("chain", "i4"),
-        ("first", "i4"),  # waiting rays, oldest first
-        ("last", "i4"),
-        ("n", "i4"),
-        ("unasked", "i4"),  # waiting rays that no request covers
-        ("requests", "i4"),  # in flight
-        ("pinned", "i4"),  # released rays that have not made their test yet
-        ("transient", "i4"),  # 1: in transient memory
-        ("partner", "i4"),  # row of the owner in ``partners``, if the policy sends
-        ("hops", "i4"),  # with record_hops: links to the owner
-    ],
-    align=True,
-)
-PARTNER = np.dtype(
-    [
-        ("key", "i8"),  # PE * nb + the other PE
-        ("load", "i8"),  # last heard; NONE if never
-        ("heard_ps", "i8"),
-        ("sent_ps", "i8"),  # departure of the last message to it, 0 if none
-        ("chain", "i4"),
-        ("sendable", "i4"),  # rays waiting for its objects that may be sent
-        ("exchanged", "i4"),  # 1: rays or objects went from one to the other
-    ],
-    align=True,
-)
-MESSAGE = np.dtype(
-    [
-        ("depart_ps", "i8"),
-        ("number", "i8"),  # the sender's send number
-        ("load", "i8"),  # the sender's, at packing, without the rays in the message
-        ("payload_bytes", "i8"),
-        ("arrival_ps", "i8"),
-        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
-        ("head_ps", "i8"),  # when its head is at the next link or port,
-        ("at", "i4"),  # and the PE where that is
-        ("destination", "i4"),
-        ("source", "i4"),
-        ("chain", "i4"),
-        ("object", "i4"),
-        ("first", "i4"),  # rays
-        ("last", "i4"),
-        ("n", "i4"),
-        ("kind", "i4"),  # NONE: a free place
-    ],
-    align=True,
-)
-COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
-"""Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
-
-EVENT = np.dtype(
-    [
-        ("time_ps", "i8"),  # when a message arrives, or the PE begins
-        ("end_ps", "i8"),  # when the PE is done, a message sent departs; of an arrival: time_ps
-        ("number", "i8"),  # the sender's send number; NONE if there is no message or it never left
-        ("payload_bytes", "i8"),
-        ("tests", "i8"),
-        ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
-        ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
-        ("rays", "i4"),  # in the message; finished by a COMPUTE
-        ("load", "i4"),  # of the PE, when it is done
-        ("ready", "i4"),  # rays of the load that are ready then; the others wait
-        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
-        ("kind", "i2"),  # of the message; NONE without one
-    ]
-)
-"""One row of the event log, a cache line."""
-
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 
-ARRAYS: dict[str, np.dtype[Any]] = {
+
+@dataclass(frozen=True)
+class Sizes:
+    """What the lengths of arrays are made of."""
+
+    nb: int
+    objects: int
+    rays: int
+    misses: int
+    """Rows: objects that PEs lack at the same time, at most."""
+    peers: int
+    """Rows: pairs of PEs that know of each other, at most."""
+    sent: int
+    """Messages that one step of a PE sends at most."""
+    tested: int
+    """Tests that are recorded."""
+    logged: int
+    """Rows of the event log that are kept before they are handed on."""
+    counted: int
+    """PEs whose time is counted: nb, or 0 without counters."""
+
+
+class Array(NamedTuple):
+    """One array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
+
+    dtype: np.dtype[Any]
+    length: Callable[[Sizes], int] | None = None
+    """Zeros to begin with; None: it is given, by workload, placement or machine."""
+
+
+def _hashed(rows: int) -> int:
+    """Buckets for that many rows: a power of two."""
+    return 1 << max(4, (rows - 1).bit_length())
+
+
+ARRAYS = {
     # of the workload and the placement: shared, only read
-    "itinerary_offsets": I8,
-    "itinerary_objects": I4,
-    "child_offsets": I4,
-    "object_bytes": I8,
-    "test_ps": I8,
-    "owners": I4,
+    "itinerary_offsets": Array(I8),  # (n + 1,)
+    "itinerary_objects": Array(I4),  # (tests,)
+    "child_offsets": Array(I4),  # (n + 1,)
+    "object_bytes": Array(I8),  # (N,)
+    "test_ps": Array(I8),  # (N,)
+    "owners": Array(I4),  # (N,)
     # Replicas as bits (bit o of the row_bytes at k * row_bytes: PE k holds object o) or, where
     # that takes less memory, as sorted ids (CSR); the other form is empty.
-    "resident": I1,
-    "replica_offsets": I8,
-    "replica_objects": I4,
+    "resident": Array(I1),
+    "replica_offsets": Array(I8),
+    "replica_objects": Array(I4),
+    # of machine and policy
+    "copy_costs": Array(COPY),
+    "topology": Array(I8),  # as ``machine.topology`` reads it
+    "rule_view": Array(VIEW),  # (1,) what a rule is shown; filled anew for each question
     # of the run
-    "copy_costs": COPY,
-    "sent_by_kind": I8,
-    "pes": PE,
-    "rays": RAY,
-    "wants": WANT,  # objects that a PE lacks, or holds for a while
-    "wants_buckets": I4,
-    "wants_marks": I4,
-    "partners": PARTNER,  # what a PE knows of another and holds for it
-    "partners_buckets": I4,
-    "partners_marks": I4,
-    "messages": MESSAGE,  # in flight or in an inbox
-    "messages_marks": I4,
-    # Wants with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_at_least rays on.
-    "unasked_ends": I4,
-    "unasked_links": I4,
-    # Wants in the transient memory of each PE, least recently used first.
-    "recent_ends": I4,
-    "recent_links": I4,
-    # Partners with sendable rays: list 2 k of PE k, or 2 k + 1 from batch rays on.
-    "unsent_ends": I4,
-    "unsent_links": I4,
-    # Partners that rays or objects were exchanged with, one list per PE (for refresh).
-    "exchanged_ends": I4,
-    "exchanged_links": I4,
-    # Wants with sendable rays: one list per partner.
-    "sendable_ends": I4,
-    "sendable_links": I4,
-    "outbox": I4,  # messages that the last step sent, in order
-    "sort_keys": I8,
-    "sort_items": I8,
-    "tested_rays": I4,
-    "tested_objects": I4,
-    "free_ps": I8,  # from when on each link and port is free; empty without contention
-    "log": EVENT,
-    # What a PE did in each bin, BINS per PE; this and what follows: empty without record_counters.
-    "compute_bins": I8,
-    "communication_bins": I8,
-    "moments": MOMENT,
-    "traffic": TRAFFIC,  # from PE i to j at nb i + j
-    "sizes": I8,  # SIZES per kind of message
-    "slices": SLICE,
+    "sent_by_kind": Array(I8, lambda n: len(MESSAGE_KINDS)),
+    "pes": Array(PE, lambda n: n.nb),
+    "rays": Array(RAY, lambda n: n.rays),
+    "misses": Array(MISS, lambda n: n.misses),  # objects that a PE lacks, or holds for a while
+    "miss_buckets": Array(I4, lambda n: _hashed(n.misses)),
+    "miss_marks": Array(I4, lambda n: 2),
+    "peers": Array(PEER, lambda n: n.peers),  # what a PE knows of another and holds for it
+    "peer_buckets": Array(I4, lambda n: _hashed(n.peers)),
+    "peer_marks": Array(I4, lambda n: 2),
+    # in flight or in an inbox; grows
+    "messages": Array(MESSAGE, lambda n: min(n.sent, n.objects + 2 * n.nb + 1)),
+    "message_marks": Array(I4, lambda n: 2),
+    # Misses with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_from rays on.
+    "unasked_ends": Array(I4, lambda n: 4 * n.nb),
+    "unasked_links": Array(I4, lambda n: 2 * n.misses),
+    # Misses in the transient memory of each PE, least recently used first.
+    "recent_ends": Array(I4, lambda n: 2 * n.nb),
+    "recent_links": Array(I4, lambda n: 2 * n.misses),
+    # Peers with sendable rays: list 2 k of PE k, or 2 k + 1 from send_from rays on.
+    "unsent_ends": Array(I4, lambda n: 4 * n.nb),
+    "unsent_links": Array(I4, lambda n: 2 * n.peers),
+    # Peers that rays or objects were exchanged with, one list per PE (for refresh).
+    "exchanged_ends": Array(I4, lambda n: 2 * n.nb),
+    "exchanged_links": Array(I4, lambda n: 2 * n.peers),
+    # Misses with sendable rays: one list per peer.
+    "sendable_ends": Array(I4, lambda n: 2 * n.peers),
+    "sendable_links": Array(I4, lambda n: 2 * n.misses),
+    "outbox": Array(I4, lambda n: n.sent),  # messages that the last step sent, in order
+    "sort_keys": Array(I8, lambda n: max(n.objects, n.nb)),
+    "sort_items": Array(I8, lambda n: max(n.objects, n.nb)),
+    "tested_rays": Array(I4, lambda n: n.tested),
+    "tested_objects": Array(I4, lambda n: n.tested),
+    "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
+    "log": Array(EVENT, lambda n: n.logged),
+    # What a PE did in each bin, BINS per PE; this and what follows: empty without counters.
+    "compute_bins": Array(I8, lambda n: n.counted * BINS),
+    "communication_bins": Array(I8, lambda n: n.counted * BINS),
+    "moments": Array(MOMENT, lambda n: BINS if n.counted else 0),
+    "traffic": Array(TRAFFIC, lambda n: n.counted**2),  # from PE i to j at nb i + j
+    "sizes": Array(I8, lambda n: len(MESSAGE_KINDS) * SIZES if n.counted else 0),  # of each kind
+    "slices": Array(SLICE, lambda n: n.counted),
+    # of the compiled event loop
+    "heap": Array(EVENT_KEY, lambda n: 0),  # grows
+    "processes": Array(PROCESS, lambda n: n.nb),
 }
-"""Every array of a run; ``<name>_at`` in RUN is its address, ``<name>_n`` its length."""
+"""Every array of a run, declared nowhere else."""
+
+
+def allocated(sizes: Sizes) -> dict[str, NDArray[Any]]:
+    """The arrays that are not given. The system gives memory only to pages that are touched."""
+    return {
+        name: np.zeros(array.length(sizes), array.dtype)
+        for name, array in ARRAYS.items()
+        if array.length is not None
+    }
+
+
+MACHINE = tuple(name for name, kind in get_type_hints(Machine).items() if kind is int)
+"""Constants of the machine: its whole numbers."""
 
 PARAMETERS = (
+    *MACHINE,
     "processors",
     "n_objects",
-    "x",  # shape of the torus
-    "y",
-    "z",
-    "send_startup_ps",
-    "receive_startup_ps",
-    "probe_ps",
-    "latency_ps",
-    "hop_latency_ps",
     "bytes_per_s",  # the smaller of link and injection bandwidth
     "contends",  # links and ports serve one message at a time
-    "header_bytes",
-    "request_bytes",
-    "ray_bytes",
-    "ray_ps",
-    "quantum",
     "depth_first",
     "transient",
     "row_bytes",  # of ``resident``; 0 if replicas are not kept as bits
@@ -236,10 +316,10 @@ PARAMETERS = (
     "asks",
     "may_send",  # addresses of the policy's rules
     "may_ask",
-    "min_load",
+    "send_from",  # waiting rays from which on the rules are asked
+    "ask_from",
+    "knows_hops",
     "initial_load",  # floor(n0 / nb): known of a PE before it is heard
-    "batch",
-    "ask_at_least",
     "load_info",
     "listens",  # remembers the loads in headers
     "refresh_ps",  # NONE: no refresh
@@ -260,6 +340,8 @@ COUNTERS = (
     "activities",
     "n_logged",
     "bin_width",  # k: the bins of the counters are 2^k ps wide
+    "n_events",  # in the heap of the compiled event loop
+    "arrivals",  # that it has seen
 )
 REPORT = (
     "phase",  # of the PE's next instant

@@ -1,275 +1,111 @@
-"""The arrays of a run as compiled code sees them: views at the addresses in its record."""
+"""The arrays of a run as compiled code sees them: ``rays(s)[7]`` is the record of ray 7.
+
+A view is an intrinsic: its few instructions (address and length out of the run's record) are put
+where it is used, so forty views cost no compilation of their own and no call.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
-from llvmlite import ir
-from numba import carray, types
+import numba
+from numba import types
 from numba.extending import intrinsic
+from numba.np.arrayobj import make_array, populate_array
 
-from simmpp.common.compiled import njit
 from simmpp.engine.arrays.hashtable import Lists, Table
-from simmpp.engine.arrays.layout import (
-    COPY,
-    EVENT,
-    I1,
-    I4,
-    I8,
-    MESSAGE,
-    MOMENT,
-    PARTNER,
-    PE,
-    RAY,
-    SLICE,
-    TRAFFIC,
-    WANT,
-    Run,
-)
+from simmpp.engine.arrays.layout import ARRAYS, Run
 
 
-@intrinsic
-def _pointer(typing_context: Any, address: Any) -> Any:
-    """The pointer to an address."""
-
-    def cast(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.inttoptr(values[0], ir.IntType(8).as_pointer())
-
-    return types.voidptr(types.int64), cast
+def _type_of(name: str) -> types.Array:
+    return types.Array(numba.from_dtype(ARRAYS[name].dtype), 1, "C")
 
 
-@njit
-def itinerary_offsets(s: Run) -> Any:
-    """(n + 1,) int64."""
-    return carray(_pointer(s.itinerary_offsets_at), s.itinerary_offsets_n, I8)
-
-
-@njit
-def itinerary_objects(s: Run) -> Any:
-    """(tests,) int32."""
-    return carray(_pointer(s.itinerary_objects_at), s.itinerary_objects_n, I4)
-
-
-@njit
-def child_offsets(s: Run) -> Any:
-    """(n + 1,) int32."""
-    return carray(_pointer(s.child_offsets_at), s.child_offsets_n, I4)
-
-
-@njit
-def object_bytes(s: Run) -> Any:
-    """(N,) int64."""
-    return carray(_pointer(s.object_bytes_at), s.object_bytes_n, I8)
-
-
-@njit
-def test_ps(s: Run) -> Any:
-    """(N,) int64."""
-    return carray(_pointer(s.test_ps_at), s.test_ps_n, I8)
-
-
-@njit
-def owners(s: Run) -> Any:
-    """(N,) int32."""
-    return carray(_pointer(s.owners_at), s.owners_n, I4)
-
-
-@njit
-def resident(s: Run) -> Any:
-    """(nb * row_bytes,) uint8."""
-    return carray(_pointer(s.resident_at), s.resident_n, I1)
-
-
-@njit
-def replica_offsets(s: Run) -> Any:
-    """(nb + 1,) int64, or empty."""
-    return carray(_pointer(s.replica_offsets_at), s.replica_offsets_n, I8)
-
-
-@njit
-def replica_objects(s: Run) -> Any:
-    """(replicas,) int32: sorted for each PE."""
-    return carray(_pointer(s.replica_objects_at), s.replica_objects_n, I4)
-
-
-@njit
-def copy_costs(s: Run) -> Any:
-    """(8,) COPY."""
-    return carray(_pointer(s.copy_costs_at), s.copy_costs_n, COPY)
-
-
-@njit
-def sent_by_kind(s: Run) -> Any:
-    """(4,) int64."""
-    return carray(_pointer(s.sent_by_kind_at), s.sent_by_kind_n, I8)
-
-
-@njit
-def pes(s: Run) -> Any:
-    """(nb,) PE."""
-    return carray(_pointer(s.pes_at), s.pes_n, PE)
-
-
-@njit
-def rays(s: Run) -> Any:
-    """(n,) RAY."""
-    return carray(_pointer(s.rays_at), s.rays_n, RAY)
-
-
-@njit
-def want_rows(s: Run) -> Any:
-    """(capacity,) WANT."""
-    return carray(_pointer(s.wants_at), s.wants_n, WANT)
-
-
-@njit
-def wants(s: Run) -> Table:
-    """WANT rows by PE * N + object."""
-    return Table(
-        carray(_pointer(s.wants_buckets_at), s.wants_buckets_n, I4),
-        want_rows(s),
-        carray(_pointer(s.wants_marks_at), s.wants_marks_n, I4),
+def _array(context: Any, builder: Any, run_type: Any, run: Any, name: str) -> Any:
+    """Instructions that make an array of what the record says about it."""
+    at, n = (
+        context.get_getattr(run_type, field)(context, builder, run_type, run, field)
+        for field in (f"{name}_at", f"{name}_n")
     )
-
-
-@njit
-def partner_rows(s: Run) -> Any:
-    """(capacity,) PARTNER."""
-    return carray(_pointer(s.partners_at), s.partners_n, PARTNER)
-
-
-@njit
-def partners(s: Run) -> Table:
-    """PARTNER rows by PE * nb + the other PE."""
-    return Table(
-        carray(_pointer(s.partners_buckets_at), s.partners_buckets_n, I4),
-        partner_rows(s),
-        carray(_pointer(s.partners_marks_at), s.partners_marks_n, I4),
+    item_type = context.get_data_type(_type_of(name).dtype)
+    item_bytes = context.get_constant(types.intp, context.get_abi_sizeof(item_type))
+    array = make_array(_type_of(name))(context, builder)
+    populate_array(
+        array,
+        data=builder.inttoptr(at, item_type.as_pointer()),
+        shape=[n],
+        strides=[item_bytes],
+        itemsize=item_bytes,
+        meminfo=None,
     )
+    return array._getvalue()
 
 
-@njit
-def messages(s: Run) -> Any:
-    """(capacity,) MESSAGE."""
-    return carray(_pointer(s.messages_at), s.messages_n, MESSAGE)
+def view(name: str) -> Any:
+    """A function of a run's record that gives the array of that name."""
+
+    @intrinsic
+    def array_of(typing_context: Any, s: Run) -> Any:
+        def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            return _array(context, builder, s, values[0], name)
+
+        return _type_of(name)(s), build
+
+    return array_of
 
 
-@njit
-def messages_marks(s: Run) -> Any:
-    """(2,) int32: free list and high-water mark of ``messages``."""
-    return carray(_pointer(s.messages_marks_at), s.messages_marks_n, I4)
+def bundle(kind: type, *names: str) -> Any:
+    """A function of a run's record that gives a named tuple of arrays."""
+
+    @intrinsic
+    def tuple_of(typing_context: Any, s: Run) -> Any:
+        def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            arrays = [_array(context, builder, s, values[0], name) for name in names]
+            return context.make_tuple(builder, signature.return_type, arrays)
+
+        return types.BaseTuple.from_types([_type_of(name) for name in names], kind)(s), build
+
+    return tuple_of
 
 
-@njit
-def unasked(s: Run) -> Lists:
-    """Wants with unasked rays, two lists per PE."""
-    return _lists(s.unasked_ends_at, s.unasked_ends_n, s.unasked_links_at, s.unasked_links_n)
-
-
-@njit
-def recent(s: Run) -> Lists:
-    """Wants in transient memory, one list per PE."""
-    return _lists(s.recent_ends_at, s.recent_ends_n, s.recent_links_at, s.recent_links_n)
-
-
-@njit
-def unsent(s: Run) -> Lists:
-    """Partners with sendable rays, two lists per PE."""
-    return _lists(s.unsent_ends_at, s.unsent_ends_n, s.unsent_links_at, s.unsent_links_n)
-
-
-@njit
-def exchanged(s: Run) -> Lists:
-    """Partners that rays or objects were exchanged with, one list per PE."""
-    return _lists(
-        s.exchanged_ends_at, s.exchanged_ends_n, s.exchanged_links_at, s.exchanged_links_n
-    )
-
-
-@njit
-def sendable(s: Run) -> Lists:
-    """Wants with sendable rays, one list per partner."""
-    return _lists(s.sendable_ends_at, s.sendable_ends_n, s.sendable_links_at, s.sendable_links_n)
-
-
-@njit
-def _lists(ends_at: int, ends_n: int, links_at: int, links_n: int) -> Lists:
-    return Lists(carray(_pointer(ends_at), ends_n, I4), carray(_pointer(links_at), links_n, I4))
-
-
-@njit
-def outbox(s: Run) -> Any:
-    """(capacity,) int32."""
-    return carray(_pointer(s.outbox_at), s.outbox_n, I4)
-
-
-@njit
-def sort_keys(s: Run) -> Any:
-    """(max(N, nb),) int64."""
-    return carray(_pointer(s.sort_keys_at), s.sort_keys_n, I8)
-
-
-@njit
-def sort_items(s: Run) -> Any:
-    """(max(N, nb),) int64."""
-    return carray(_pointer(s.sort_items_at), s.sort_items_n, I8)
-
-
-@njit
-def tested_rays(s: Run) -> Any:
-    """(tests,) int32, or empty."""
-    return carray(_pointer(s.tested_rays_at), s.tested_rays_n, I4)
-
-
-@njit
-def tested_objects(s: Run) -> Any:
-    """(tests,) int32, or empty."""
-    return carray(_pointer(s.tested_objects_at), s.tested_objects_n, I4)
-
-
-@njit
-def free_ps(s: Run) -> Any:
-    """(8 nb,) int64, or empty: see ``machine.links``."""
-    return carray(_pointer(s.free_ps_at), s.free_ps_n, I8)
-
-
-@njit
-def compute_bins(s: Run) -> Any:
-    """(nb * BINS,) int64, or empty."""
-    return carray(_pointer(s.compute_bins_at), s.compute_bins_n, I8)
-
-
-@njit
-def communication_bins(s: Run) -> Any:
-    """(nb * BINS,) int64, or empty."""
-    return carray(_pointer(s.communication_bins_at), s.communication_bins_n, I8)
-
-
-@njit
-def moments(s: Run) -> Any:
-    """(BINS,) MOMENT, or empty."""
-    return carray(_pointer(s.moments_at), s.moments_n, MOMENT)
-
-
-@njit
-def traffic(s: Run) -> Any:
-    """(nb * nb,) TRAFFIC, or empty."""
-    return carray(_pointer(s.traffic_at), s.traffic_n, TRAFFIC)
-
-
-@njit
-def sizes(s: Run) -> Any:
-    """(4 * SIZES,) int64, or empty."""
-    return carray(_pointer(s.sizes_at), s.sizes_n, I8)
-
-
-@njit
-def slices(s: Run) -> Any:
-    """(nb,) SLICE, or empty."""
-    return carray(_pointer(s.slices_at), s.slices_n, SLICE)
-
-
-@njit
-def log(s: Run) -> Any:
-    """(capacity,) EVENT, or empty."""
-    return carray(_pointer(s.log_at), s.log_n, EVENT)
+itinerary_offsets = view("itinerary_offsets")
+itinerary_objects = view("itinerary_objects")
+child_offsets = view("child_offsets")
+object_bytes = view("object_bytes")
+test_ps = view("test_ps")
+owners = view("owners")
+resident = view("resident")
+replica_offsets = view("replica_offsets")
+replica_objects = view("replica_objects")
+copy_costs = view("copy_costs")
+topology = view("topology")
+rule_view = view("rule_view")
+sent_by_kind = view("sent_by_kind")
+pes = view("pes")
+rays = view("rays")
+miss_rows = view("misses")
+misses = bundle(Table, "miss_buckets", "misses", "miss_marks")
+peer_rows = view("peers")
+peers = bundle(Table, "peer_buckets", "peers", "peer_marks")
+messages = view("messages")
+message_marks = view("message_marks")
+unasked = bundle(Lists, "unasked_ends", "unasked_links")
+recent = bundle(Lists, "recent_ends", "recent_links")
+unsent = bundle(Lists, "unsent_ends", "unsent_links")
+exchanged = bundle(Lists, "exchanged_ends", "exchanged_links")
+sendable = bundle(Lists, "sendable_ends", "sendable_links")
+outbox = view("outbox")
+sort_keys = view("sort_keys")
+sort_items = view("sort_items")
+tested_rays = view("tested_rays")
+tested_objects = view("tested_objects")
+free_ps = view("free_ps")
+log = view("log")
+compute_bins = view("compute_bins")
+communication_bins = view("communication_bins")
+moments = view("moments")
+traffic = view("traffic")
+sizes = view("sizes")
+slices = view("slices")
+heap = view("heap")
+processes = view("processes")

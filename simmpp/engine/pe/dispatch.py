@@ -3,6 +3,15 @@
 Sends come before asks; owners in the order me + 1, me + 2, ... (mod nb), objects by the ray that
 has waited longest. The decisions cost nothing, the messages do.
 
+An example, concurrent dataflow with batch 2 and ask_at_least 3: rays 4, 6 and 9 wait for object 20
+of PE 3 and ray 5 for object 21 of PE 0; PE 1 decides, still has ready rays and holds 8 rays in all.
+
+    send  PE 3: 3 rays wait, enough to ask the rule; 8 > min_load, 8 > 5 (heard of PE 3): a message
+          RAYS takes 4, 6 and 9. The load is 5 when it is packed, and a rule asked next sees that.
+          PE 0: 1 ray, not enough: the rule is asked only with nothing else to do.
+    ask   Object 21: 1 ray, not enough. Had the rule kept 4, 6 and 9, object 20 would be asked for,
+          and from then on its rays can't be sent until it is here.
+
 Progress, whatever the rules say: rays go only to the owner of the object they need next, where it
 is resident for good, and a fetched object is pinned for the rays that it makes ready. So every
 transfer makes at least one test, and stale loads can herd rays but not bounce them.
@@ -10,39 +19,42 @@ transfer makes at least one test, and stale loads can herd rays but not bounce t
 
 from __future__ import annotations
 
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, clear, first, following, sort_by_key
 from simmpp.engine.arrays.layout import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
+    miss_rows,
     owners,
-    partner_rows,
+    peer_rows,
     pes,
     rays,
+    rule_view,
     sendable,
     sort_items,
     sort_keys,
+    topology,
     unasked,
     unsent,
-    want_rows,
 )
-from simmpp.engine.pe.misses import drop_if_idle, set_partner_sendable, set_unasked, withdraw
-from simmpp.engine.pe.sending import send
+from simmpp.engine.pe.misses import drop_if_idle, set_peer_sendable, set_unasked, withdraw
+from simmpp.engine.pe.sending import send_load, send_rays, send_request
 from simmpp.engine.record.counters import note_work
-from simmpp.machine.messages import LOAD, RAYS, REQUEST
-from simmpp.policy.rules import allows
+from simmpp.machine.topology import hops
+from simmpp.policy.compiled_rules import allows
 
 
-@njit
+@kernel
 def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     """Send and ask as the policy says; returns the end of the activity."""
     pe = pes(s)[me]
-    nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
+    # Once, before anything is sent: what a message takes away doesn't make the next one urgent.
+    rule_view(s)[0].nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
     clock_ps = now_ps
     if s.sends:
-        clock_ps = _send_rays(s, me, nothing_else, clock_ps)
+        clock_ps = _send_rays(s, me, clock_ps)
     if s.asks:
-        clock_ps = _ask_for_objects(s, me, nothing_else, clock_ps)
+        clock_ps = _ask_for_objects(s, me, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
         clock_ps = _refresh_loads(s, me, clock_ps)
     if s.record_counters and clock_ps > now_ps:
@@ -51,41 +63,38 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     return clock_ps
 
 
-@njit
-def _send_rays(s: Run, me: int, nothing_else: int, now_ps: int) -> int:
-    pe = pes(s)[me]
-    n = _collect_owners(s, me, nothing_else)
+@kernel
+def _send_rays(s: Run, me: int, now_ps: int) -> int:
+    pe, view = pes(s)[me], rule_view(s)[0]
+    # Collected before the first message, as sending changes the lists.
+    n = _collect_peers(s, me, unsent(s), 2 * me + 1, 0)
+    if view.nothing_else:
+        n = _collect_peers(s, me, unsent(s), 2 * me, n)
     clock_ps = now_ps
     for i in range(n):
-        row = sort_items(s)[i]
-        partner = partner_rows(s)[row]
-        owner = partner.key % s.processors
-        known_load, age_ps = _known_load(s, partner, owner, clock_ps)
-        waiting = partner.sendable
-        seen = (pe.load, known_load, age_ps, waiting, nothing_else, s.min_load)
-        if allows(s.may_send, seen):
-            head, tail = _take_rays(s, me, row)
-            pe.load -= waiting
-            s.rays_sent += waiting
-            n_bytes = waiting * s.ray_bytes
-            clock_ps = send(s, me, owner, RAYS, NONE, head, tail, waiting, n_bytes, clock_ps)
+        peer_row = sort_items(s)[i]
+        peer = peer_rows(s)[peer_row]
+        owner = peer.key % s.processors
+        _show_load(s, peer, owner, clock_ps)
+        view.load, view.waiting = pe.load, peer.sendable
+        if s.knows_hops:
+            view.hops = hops(topology(s), me, owner)
+        if allows(s.may_send, view):
+            n_rays = peer.sendable
+            head, tail = _take_rays(s, me, peer_row)
+            pe.load -= n_rays
+            s.rays_sent += n_rays
+            clock_ps = send_rays(s, me, owner, head, tail, n_rays, clock_ps)
     return clock_ps
 
 
-@njit
-def _collect_owners(s: Run, me: int, nothing_else: int) -> int:
-    """Partners that rays may be sent to, in ring order from me, into ``sort_items``."""
-    n = _collect_partners(s, me, unsent(s), 2 * me + 1, 0)
-    return _collect_partners(s, me, unsent(s), 2 * me, n) if nothing_else else n
-
-
-@njit
-def _collect_partners(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
-    """Add the partners of one list to the first n of ``sort_items``, in ring order from me."""
+@kernel
+def _collect_peers(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
+    """Add the peers of one list to the first n of ``sort_items``, in ring order from me."""
     nb = s.processors
     row = first(lists, which)
     while row >= 0:
-        sort_keys(s)[n] = (partner_rows(s)[row].key % nb - me) % nb
+        sort_keys(s)[n] = (peer_rows(s)[row].key % nb - me) % nb
         sort_items(s)[n] = row
         n += 1
         row = following(lists, row)
@@ -93,68 +102,74 @@ def _collect_partners(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
     return n
 
 
-@njit
-def _known_load(s: Run, partner: Row, owner: int, now_ps: int) -> tuple[int, int]:
-    """What this PE knows of the owner's load, and how old that is."""
+@kernel
+def _show_load(s: Run, peer: Row, owner: int, now_ps: int) -> None:
+    """Let the rule see what this PE knows of the owner's load, and how old that is."""
+    view = rule_view(s)[0]
     if s.load_info == NO_INFO:
-        return NONE, now_ps
-    if s.load_info == EXACT:
-        return pes(s)[owner].settled_load, 0
-    if partner.load == NONE:
-        return s.initial_load, now_ps
-    return partner.load, now_ps - partner.heard_ps
+        view.known_load, view.age_ps = NONE, now_ps
+    elif s.load_info == EXACT:
+        view.known_load, view.age_ps = pes(s)[owner].settled_load, 0
+    elif peer.load == NONE:
+        view.known_load, view.age_ps = s.initial_load, now_ps
+    else:
+        view.known_load, view.age_ps = peer.load, now_ps - peer.heard_ps
 
 
-@njit
-def _take_rays(s: Run, me: int, partner: int) -> tuple[int, int]:
+@kernel
+def _take_rays(s: Run, me: int, peer_row: int) -> tuple[int, int]:
     """Unfile all sendable rays of one owner: objects as they became sendable; first and last."""
     head, tail = NONE, NONE
-    row = first(sendable(s), partner)
-    while row >= 0:
-        want, successor = want_rows(s)[row], following(sendable(s), row)
+    miss_row = first(sendable(s), peer_row)
+    while miss_row >= 0:
+        # The successor is read first: the row may be given back.
+        miss, successor = miss_rows(s)[miss_row], following(sendable(s), miss_row)
         if head == NONE:
-            head = want.first
+            head = miss.first
         else:
-            rays(s)[tail].next = want.first
-        tail = want.last
-        want.n = 0
-        set_unasked(s, me, row, 0)
-        drop_if_idle(s, row)
-        row = successor
-    clear(sendable(s), partner)
-    set_partner_sendable(s, me, partner, 0)
+            rays(s)[tail].next = miss.first
+        tail = miss.last
+        miss.first, miss.n = NONE, 0
+        set_unasked(s, me, miss_row, 0)
+        drop_if_idle(s, miss_row)
+        miss_row = successor
+    clear(sendable(s), peer_row)
+    set_peer_sendable(s, me, peer_row, 0)
     return head, tail
 
 
-@njit
-def _ask_for_objects(s: Run, me: int, nothing_else: int, now_ps: int) -> int:
-    pe = pes(s)[me]
-    n = _collect_wants(s, me, nothing_else)
+@kernel
+def _ask_for_objects(s: Run, me: int, now_ps: int) -> int:
+    pe, view = pes(s)[me], rule_view(s)[0]
+    view.known_load, view.age_ps = NONE, 0
+    n = _collect_misses(s, me, view.nothing_else)
     clock_ps = now_ps
     for i in range(n):
-        row = sort_items(s)[i]
-        want = want_rows(s)[row]
-        if allows(s.may_ask, (pe.load, want.unasked, nothing_else)):
-            wanted = want.key % s.n_objects
-            requests = 1 if s.merge_requests else want.unasked
-            if want.requests == 0:
-                withdraw(s, me, row)
-            set_unasked(s, me, row, 0)
-            want.requests += requests
+        miss_row = sort_items(s)[i]
+        miss = miss_rows(s)[miss_row]
+        obj = miss.key % s.n_objects
+        view.load, view.waiting = pe.load, miss.unasked
+        if s.knows_hops:
+            view.hops = hops(topology(s), me, owners(s)[obj])
+        if allows(s.may_ask, view):
+            requests = 1 if s.merge_requests else miss.unasked
+            if miss.requests == 0:
+                withdraw(s, me, miss_row)
+            set_unasked(s, me, miss_row, 0)
+            miss.requests += requests
             for _ in range(requests):
-                owner, n_bytes = owners(s)[wanted], s.request_bytes
-                clock_ps = send(s, me, owner, REQUEST, wanted, NONE, NONE, 0, n_bytes, clock_ps)
+                clock_ps = send_request(s, me, obj, clock_ps)
     return clock_ps
 
 
-@njit
-def _collect_wants(s: Run, me: int, nothing_else: int) -> int:
-    """Wants that may be asked for, longest waiting first, into ``sort_items``."""
+@kernel
+def _collect_misses(s: Run, me: int, nothing_else: int) -> int:
+    """Misses that may be asked for, longest waiting first, into ``sort_items``."""
     n = 0
     for which in range(2 * me if nothing_else else 2 * me + 1, 2 * me + 2):
         row = first(unasked(s), which)
         while row >= 0:
-            sort_keys(s)[n] = want_rows(s)[row].since
+            sort_keys(s)[n] = miss_rows(s)[row].since
             sort_items(s)[n] = row
             n += 1
             row = following(unasked(s), row)
@@ -162,16 +177,15 @@ def _collect_wants(s: Run, me: int, nothing_else: int) -> int:
     return n
 
 
-@njit
+@kernel
 def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
-    """Tell partners that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
+    """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
 
     Not after the receipt of such a message, or loads would answer loads for ever.
     """
     clock_ps = now_ps
-    for i in range(_collect_partners(s, me, exchanged(s), me, 0)):
-        partner = partner_rows(s)[sort_items(s)[i]]
-        if clock_ps - partner.sent_ps >= s.refresh_ps:
-            other = partner.key % s.processors
-            clock_ps = send(s, me, other, LOAD, NONE, NONE, NONE, 0, 0, clock_ps)
+    for i in range(_collect_peers(s, me, exchanged(s), me, 0)):
+        peer = peer_rows(s)[sort_items(s)[i]]
+        if clock_ps - peer.sent_ps >= s.refresh_ps:
+            clock_ps = send_load(s, me, peer.key % s.processors, clock_ps)
     return clock_ps

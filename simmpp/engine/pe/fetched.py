@@ -2,71 +2,71 @@
 
 from __future__ import annotations
 
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import append, find, first, unlink
 from simmpp.engine.arrays.layout import Run
-from simmpp.engine.arrays.views import object_bytes, pes, rays, recent, want_rows, wants
+from simmpp.engine.arrays.views import miss_rows, misses, object_bytes, pes, rays, recent
 from simmpp.engine.pe.misses import drop_if_idle, set_sendable
 from simmpp.engine.pe.ready import make_ready
 
 
-@njit
-def admit_object(s: Run, me: int, arrived: int) -> None:
+@kernel
+def admit_object(s: Run, me: int, obj: int) -> None:
     """A fetched object has arrived: rays that wait for it are released for one test each."""
-    row = find(wants(s), me * s.n_objects + arrived)
-    want = want_rows(s)[row]
-    want.requests -= 1
-    if want.pinned == 0 and want.transient == 0:
-        pes(s)[me].held_bytes += object_bytes(s)[arrived]
-    _release(s, me, row)
-    if want.requests == 0 and want.n > 0:
-        set_sendable(s, me, row, want.n)
+    miss_row = find(misses(s), me * s.n_objects + obj)
+    miss = miss_rows(s)[miss_row]
+    miss.requests -= 1
+    if miss.pinned == 0 and miss.transient == 0:
+        pes(s)[me].held_bytes += object_bytes(s)[obj]
+    _release(s, me, miss_row)
+    if miss.requests == 0 and miss.n > 0:
+        set_sendable(s, me, miss_row, miss.n)
     if s.transient > 0:
-        _keep(s, me, row)
-    elif want.pinned == 0:
-        pes(s)[me].held_bytes -= object_bytes(s)[arrived]
-    drop_if_idle(s, row)
+        _keep(s, me, miss_row)
+    elif miss.pinned == 0:
+        pes(s)[me].held_bytes -= object_bytes(s)[obj]
+    drop_if_idle(s, miss_row)
 
 
-@njit
-def _release(s: Run, me: int, row: int) -> None:
+@kernel
+def _release(s: Run, me: int, miss_row: int) -> None:
     """Grant the waiting rays (one, if requests are not merged) their next test."""
-    want = want_rows(s)[row]
-    if want.n == 0:
+    miss = miss_rows(s)[miss_row]
+    if miss.n == 0:
         return
-    n = want.n if s.merge_requests else 1
-    head = want.first
+    n = miss.n if s.merge_requests else 1
+    head = miss.first
     tail = head
-    _grant(s, tail, want.hops)
+    _grant(s, tail, miss.hops)
     for _ in range(n - 1):
         tail = rays(s)[tail].next
-        _grant(s, tail, want.hops)
-    want.first = rays(s)[tail].next
-    want.n -= n
-    want.pinned += n
+        _grant(s, tail, miss.hops)
+    miss.first = rays(s)[tail].next
+    miss.n -= n
+    miss.pinned += n
     make_ready(s, me, head, tail, n)
 
 
-@njit
+@kernel
 def _grant(s: Run, ray: int, hops: int) -> None:
     """What the ray was filed for has come to it, the same way back."""
     rays(s)[ray].granted = 1
     rays(s)[ray].hops += hops
 
 
-@njit
-def _keep(s: Run, me: int, row: int) -> None:
+@kernel
+def _keep(s: Run, me: int, miss_row: int) -> None:
     """Put a fetched object into transient memory; the least recently used one may have to go."""
-    pe, want = pes(s)[me], want_rows(s)[row]
-    if want.transient == 1:
-        touch(s, me, row)
+    pe, miss = pes(s)[me], miss_rows(s)[miss_row]
+    if miss.transient == 1:
+        touch(s, me, miss_row)
         return
-    want.transient = 1
-    append(recent(s), me, row)
+    miss.transient = 1
+    append(recent(s), me, miss_row)
     pe.n_transient += 1
     if pe.n_transient > s.transient:
         oldest = first(recent(s), me)
-        evicted = want_rows(s)[oldest]
+        evicted = miss_rows(s)[oldest]
         unlink(recent(s), me, oldest)
         evicted.transient = 0
         pe.n_transient -= 1
@@ -75,19 +75,19 @@ def _keep(s: Run, me: int, row: int) -> None:
         drop_if_idle(s, oldest)
 
 
-@njit
-def touch(s: Run, me: int, row: int) -> None:
+@kernel
+def touch(s: Run, me: int, miss_row: int) -> None:
     """An object in transient memory is used: it becomes the most recent one."""
-    if want_rows(s)[row].transient == 1:
-        unlink(recent(s), me, row)
-        append(recent(s), me, row)
+    if miss_rows(s)[miss_row].transient == 1:
+        unlink(recent(s), me, miss_row)
+        append(recent(s), me, miss_row)
 
 
-@njit
-def unpin(s: Run, me: int, row: int, tested: int) -> None:
+@kernel
+def unpin(s: Run, me: int, miss_row: int, obj: int) -> None:
     """A released ray has made the test that the object was pinned for."""
-    want = want_rows(s)[row]
-    want.pinned -= 1
-    if want.pinned == 0 and want.transient == 0:
-        pes(s)[me].held_bytes -= object_bytes(s)[tested]
-    drop_if_idle(s, row)
+    miss = miss_rows(s)[miss_row]
+    miss.pinned -= 1
+    if miss.pinned == 0 and miss.transient == 0:
+        pes(s)[me].held_bytes -= object_bytes(s)[obj]
+    drop_if_idle(s, miss_row)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.layout import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, pes, rays
 
 
-@njit
+@kernel
 def make_ready(s: Run, me: int, first: int, last: int, n: int) -> None:
     """Make the linked rays first ... last ready, as a block that keeps its order.
 
@@ -15,34 +15,35 @@ def make_ready(s: Run, me: int, first: int, last: int, n: int) -> None:
     """
     pe = pes(s)[me]
     if pe.n_ready == 0:
-        pe.ready_first, pe.ready_last = first, last
+        pe.first, pe.last = first, last
         rays(s)[last].next = NONE
     elif s.depth_first:
-        rays(s)[last].next = pe.ready_first
-        pe.ready_first = first
+        rays(s)[last].next = pe.first
+        pe.first = first
     else:
-        rays(s)[pe.ready_last].next = first
+        rays(s)[pe.last].next = first
         rays(s)[last].next = NONE
-        pe.ready_last = last
+        pe.last = last
     pe.n_ready += n
 
 
-@njit
+@kernel
 def pop_ready(s: Run, me: int) -> None:
     """Take the first ray out of the ready ones."""
     pe = pes(s)[me]
-    pe.ready_first = rays(s)[pe.ready_first].next
+    pe.first = rays(s)[pe.first].next
     pe.n_ready -= 1
 
 
-@njit
+@kernel
 def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     """A ray has made its last test and is shaded: its children become ready here."""
     pe = pes(s)[me]
     child, end = child_offsets(s)[ray], child_offsets(s)[ray + 1]
     if child < end:
-        for each in range(child, end):
-            rays(s)[each].next = each + 1
+        # Children are numbered in a row; make_ready corrects what comes after the last one.
+        for ray_number in range(child, end):
+            rays(s)[ray_number].next = ray_number + 1
         make_ready(s, me, child, end - 1, end - child)
     pe.load += end - child - 1
     pe.peak_rays = max(pe.peak_rays, pe.load)

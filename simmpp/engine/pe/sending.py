@@ -1,126 +1,97 @@
-"""Packing a message, and when it arrives, alone or behind others."""
+"""Packing messages, one function for each kind; each returns the moment when it has been packed."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import take
-from simmpp.engine.arrays.layout import NONE, PACK, Row, Run
+from simmpp.engine.arrays.layout import NONE, PACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
-    free_ps,
+    message_marks,
     messages,
-    messages_marks,
+    object_bytes,
     outbox,
-    partner_rows,
+    owners,
+    peer_rows,
     pes,
     sent_by_kind,
 )
-from simmpp.engine.pe.misses import note_exchange, partner_of
+from simmpp.engine.network import depart
+from simmpp.engine.pe.misses import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
-from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import OBJECT, RAYS
-from simmpp.machine.torus import ejection_port, hops, injection_port, link_towards
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.transfer import transfer_ps
 
 
-@njit
+@kernel
 def copy_ps(cost: Any, payload_bytes: int) -> int:
     """Packing or unpacking of one message: fixed + per byte of payload."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
 
 
-@njit
-def send(
-    s: Run,
-    me: int,
-    destination: int,
-    kind: int,
-    wanted: int,
-    first: int,
-    last: int,
-    n: int,
-    payload_bytes: int,
-    now_ps: int,
-) -> int:
-    """Pack a message and let it depart; returns the moment when it has been packed.
+@kernel
+def send_request(s: Run, me: int, obj: int, now_ps: int) -> int:
+    """Ask the owner of an object for it."""
+    row = _new_message(s, REQUEST, owners(s)[obj], s.request_bytes)
+    messages(s)[row].obj = obj
+    return _send(s, me, row, now_ps)
 
-    The rays first ... last of a RAYS message must have left the sender's load already.
-    """
-    pe = pes(s)[me]
-    depart_ps = now_ps + s.send_startup_ps + copy_ps(copy_costs(s)[PACK + kind], payload_bytes)
-    row = take(messages(s), messages_marks(s))
+
+@kernel
+def answer(s: Run, me: int, requester: int, obj: int, now_ps: int) -> int:
+    """Send an object to who asked for it."""
+    row = _new_message(s, OBJECT, requester, object_bytes(s)[obj])
+    messages(s)[row].obj = obj
+    return _send(s, me, row, now_ps)
+
+
+@kernel
+def send_rays(s: Run, me: int, owner: int, first: int, last: int, n: int, now_ps: int) -> int:
+    """Send n linked rays, first ... last, which must have left the sender's load already."""
+    row = _new_message(s, RAYS, owner, n * s.ray_bytes)
     m = messages(s)[row]
-    m.kind, m.source, m.destination = kind, me, destination
-    m.object, m.first, m.last, m.n = wanted, first, last, n
-    m.payload_bytes, m.load = payload_bytes, pe.load
-    m.depart_ps, m.number = depart_ps, pe.messages_sent
-    if s.contends:
-        inject(s, m)
-    else:
-        m.arrival_ps = depart_ps + flight_ps(s, me, destination, payload_bytes)
+    m.first, m.last, m.n = first, last, n
+    return _send(s, me, row, now_ps)
+
+
+@kernel
+def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
+    """Tell another PE the load, which is in every header: there is nothing else in this message."""
+    return _send(s, me, _new_message(s, LOAD, other, 0), now_ps)
+
+
+@kernel
+def _new_message(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+    row = take(messages(s), message_marks(s))
+    m = messages(s)[row]
+    m.kind, m.destination, m.payload_bytes = kind, destination, payload_bytes
+    m.obj, m.n = NONE, 0
+    return row
+
+
+@kernel
+def _send(s: Run, me: int, row: int, now_ps: int) -> int:
+    """Pack a message and let it depart."""
+    pe, m = pes(s)[me], messages(s)[row]
+    cost_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + m.kind], m.payload_bytes)
+    m.source, m.load, m.number = me, pe.load, pe.messages_sent
+    m.depart_ps = now_ps + cost_ps
+    depart(s, m)
     pe.messages_sent += 1
-    sent_by_kind(s)[kind] += 1
-    s.bytes_sent += payload_bytes + s.header_bytes
+    sent_by_kind(s)[m.kind] += 1
+    s.bytes_sent += m.payload_bytes + s.header_bytes
     if s.refresh_ps != NONE:
-        partner = partner_of(s, me, destination)
-        partner_rows(s)[partner].sent_ps = depart_ps
-        if kind in (OBJECT, RAYS):
-            note_exchange(s, me, partner)
+        peer_row = peer_of(s, me, m.destination)
+        peer_rows(s)[peer_row].sent_ps = m.depart_ps
+        if m.kind in (OBJECT, RAYS):
+            note_exchange(s, me, peer_row)
     if s.logs:
         note_send(s, me, row, now_ps)
     if s.record_counters:
         note_departure(s, m)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
-    return depart_ps
-
-
-@njit
-def flight_ps(s: Run, source: int, destination: int, payload_bytes: int) -> int:
-    """From departure to arrival on an uncontended torus."""
-    n_hops = hops(s.x, s.y, s.z, source, destination)
-    return (
-        s.latency_ps
-        + n_hops * s.hop_latency_ps
-        + transfer_ps(payload_bytes + s.header_bytes, s.bytes_per_s)
-    )
-
-
-@njit
-def inject(s: Run, m: Row) -> None:
-    """Take the port of the sender, which no one else uses and which its messages reach in order."""
-    m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
-    m.at, m.arrival_ps = m.source, NONE
-    m.head_ps = _take(s, injection_port(m.source), m.depart_ps, m.busy_ps) + s.latency_ps
-
-
-@njit
-def move_head(runs: NDArray[np.void], message: int) -> int:
-    """The head of a message is at a link or at the last port: it takes it as soon as that is free.
-
-    Returns when the head is at the next one, or when the message arrives, which is known then.
-    """
-    s: Run = runs[0]
-    m = messages(s)[message]
-    if m.at == m.destination:
-        m.arrival_ps = _take(s, ejection_port(m.at), m.head_ps, m.busy_ps) + m.busy_ps
-        return m.arrival_ps
-    link, m.at = link_towards((s.x, s.y, s.z), m.at, m.destination)
-    m.head_ps = _take(s, link, m.head_ps, m.busy_ps) + s.hop_latency_ps
-    return m.head_ps
-
-
-@njit
-def _take(s: Run, row: int, now_ps: int, busy_ps: int) -> int:
-    """Keep a link or port busy from when it is free; returns when that is."""
-    start_ps = max(now_ps, free_ps(s)[row])
-    if start_ps > CLOCK_LIMIT_PS:
-        raise OverflowError("the clock")
-    free_ps(s)[row] = start_ps + busy_ps
-    return start_ps
+    return m.depart_ps

@@ -8,38 +8,28 @@ messages that it leaves in the outbox; they know nothing of rays, objects or pol
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find, give_back
-from simmpp.engine.arrays.layout import (
-    BEGIN,
-    DISPATCH,
-    NONE,
-    UNPACK,
-    Run,
-)
+from simmpp.engine.arrays.layout import BEGIN, DISPATCH, NONE, UNPACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     itinerary_objects,
     itinerary_offsets,
+    message_marks,
     messages,
-    messages_marks,
-    object_bytes,
-    partner_rows,
+    misses,
+    peer_rows,
     pes,
     rays,
     test_ps,
     tested_objects,
     tested_rays,
-    wants,
 )
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
-from simmpp.engine.pe.misses import file_ray, is_in_memory, note_exchange, partner_of
+from simmpp.engine.pe.misses import file_ray, is_in_memory, note_exchange, peer_of
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
-from simmpp.engine.pe.sending import copy_ps, send
+from simmpp.engine.pe.sending import answer, copy_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -48,20 +38,21 @@ from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 SLEEP = -1
 
 
-@njit
-def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int) -> int:
+@kernel
+def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     """Act on an instant of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold the phase of that instant, whether the message was consumed
     and the number of messages in the outbox.
     """
-    s: Run = runs[0]
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     pe = pes(s)[me]
     next_ps = now_ps
     if phase == DISPATCH:
         next_ps = dispatch(s, me, message == NONE, now_ps)
+    # What was sent departs by now; a dispatch that sent nothing took no time, so the next activity
+    # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
         next_ps = _begin(s, me, message, now_ps)
     pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
@@ -70,10 +61,11 @@ def step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int)
     return next_ps
 
 
-@njit
+@kernel
 def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
+    # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
     if message == NONE and pe.n_ready == 0:
         return SLEEP
@@ -89,16 +81,17 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     return next_ps
 
 
-@njit
+@kernel
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack one message and do what it asks for; returns the end of that work."""
     pe, m = pes(s)[me], messages(s)[message]
     clock_ps = now_ps + s.receive_startup_ps
     clock_ps += copy_ps(copy_costs(s)[UNPACK + m.kind], m.payload_bytes)
+    # Heard before an answer is packed, and whatever the message is.
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
     if m.kind == OBJECT:
-        admit_object(s, me, m.object)
+        admit_object(s, me, m.obj)
     elif m.kind == RAYS:
         pe.load += m.n
         pe.peak_rays = max(pe.peak_rays, pe.load)
@@ -108,29 +101,29 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     if s.record_counters and m.kind == RAYS:
         note_load(s, me, clock_ps)
     if m.kind == REQUEST:
-        payload_bytes = object_bytes(s)[m.object]
-        clock_ps = send(s, me, m.source, OBJECT, m.object, NONE, NONE, 0, payload_bytes, clock_ps)
+        # Answered as part of the receipt, not by the policy: no one can be left waiting by a rule.
+        clock_ps = answer(s, me, m.source, m.obj, clock_ps)
     s.received += 1
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     m.kind = NONE
-    give_back(messages(s), messages_marks(s), message)
+    give_back(messages(s), message_marks(s), message)
     return clock_ps
 
 
-@njit
+@kernel
 def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
     if s.listens:
-        row = partner_of(s, me, source)
-        partner_rows(s)[row].load = load
-        partner_rows(s)[row].heard_ps = now_ps
+        peer_row = peer_of(s, me, source)
+        peer_rows(s)[peer_row].load = load
+        peer_rows(s)[peer_row].heard_ps = now_ps
         if s.refresh_ps != NONE and kind in (OBJECT, RAYS):
-            note_exchange(s, me, row)
+            note_exchange(s, me, peer_row)
 
 
-@njit
+@kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
     """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
@@ -139,18 +132,21 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     pe.received_load = 0
     tests, done = 0, s.rays_done
     while tests < s.quantum and pe.n_ready > 0:
-        ray = pe.ready_first
+        ray = pe.first
         first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
         while first + rays(s)[ray].tested < end:
-            missing = itinerary_objects(s)[first + rays(s)[ray].tested]
-            if rays(s)[ray].granted == 0 and not is_in_memory(s, me, missing):
+            obj = itinerary_objects(s)[first + rays(s)[ray].tested]
+            # What a ray was granted may have left the transient memory again: it is pinned for it.
+            if rays(s)[ray].granted == 0 and not is_in_memory(s, me, obj):
                 pop_ready(s, me)
-                file_ray(s, me, ray, missing)
+                file_ray(s, me, ray, obj)
                 break
+            # Only here: a ray that fills the quantum still leaves if it is done or lacks an
+            # object, as neither costs a test.
             if tests == s.quantum:
                 break
-            clock_ps += test_ps(s)[missing]
-            _test(s, me, ray, missing)
+            clock_ps += test_ps(s)[obj]
+            _test(s, me, ray, obj)
             tests += 1
         else:
             clock_ps += s.ray_ps
@@ -167,18 +163,18 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     return clock_ps
 
 
-@njit
-def _test(s: Run, me: int, ray: int, tested: int) -> None:
+@kernel
+def _test(s: Run, me: int, ray: int, obj: int) -> None:
     """One ray-object intersection; what it finds is in the workload."""
     if s.record_tests:
-        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, tested
+        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
     s.tests += 1
     r = rays(s)[ray]
     r.tested += 1
     if r.granted or s.transient > 0:
-        want = find(wants(s), me * s.n_objects + tested)
-        if want != NONE:
-            touch(s, me, want)
+        miss_row = find(misses(s), me * s.n_objects + obj)
+        if miss_row != NONE:  # a resident object has none
+            touch(s, me, miss_row)
             if r.granted:
-                unpin(s, me, want, tested)
+                unpin(s, me, miss_row, obj)
         r.granted = 0

@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import BINS, NONE, SIZES, Row, Run
 from simmpp.engine.arrays.views import (
     communication_bins,
     compute_bins,
+    message_marks,
     messages,
-    messages_marks,
     moments,
     pes,
     sizes,
@@ -60,7 +60,7 @@ def first_width(least_ps: int) -> int:
     return max(0, (least_ps // BINS).bit_length() - 1)
 
 
-@njit
+@kernel
 def note_work(s: Run, me: int, begin_ps: int, tests_ps: int, end_ps: int) -> None:
     """A PE communicates from ``begin_ps`` to ``tests_ps``, and then computes until ``end_ps``."""
     count_work(s, me, begin_ps)
@@ -68,7 +68,7 @@ def note_work(s: Run, me: int, begin_ps: int, tests_ps: int, end_ps: int) -> Non
     work.begin_ps, work.tests_ps, work.end_ps = begin_ps, tests_ps, end_ps
 
 
-@njit
+@kernel
 def count_work(s: Run, me: int, now_ps: int) -> None:
     """Count a PE's latest work, as far as it was before ``now_ps``."""
     work = slices(s)[me]
@@ -79,7 +79,7 @@ def count_work(s: Run, me: int, now_ps: int) -> None:
     _spread(compute_bins(s), me * BINS, s.bin_width, tests_ps, end_ps)
 
 
-@njit
+@kernel
 def _spread(bins: Ints, first: int, width: int, begin_ps: int, end_ps: int) -> None:
     """Add the time from begin to end to the bins that it lies in; ``first`` is that of time 0."""
     while begin_ps < end_ps:
@@ -89,7 +89,7 @@ def _spread(bins: Ints, first: int, width: int, begin_ps: int, end_ps: int) -> N
         begin_ps = stop_ps
 
 
-@njit
+@kernel
 def note_load(s: Run, me: int, now_ps: int) -> None:
     """A PE's load is another one from now on; at the makespan all are 0."""
     held = slices(s)[me]
@@ -97,13 +97,13 @@ def note_load(s: Run, me: int, now_ps: int) -> None:
     held.load, held.since_ps = pes(s)[me].load, now_ps
 
 
-@njit
+@kernel
 def note_finished(s: Run, n_rays: int, now_ps: int) -> None:
     """A computation that finished rays ends."""
     _moment(s, now_ps).finished += n_rays
 
 
-@njit
+@kernel
 def note_departure(s: Run, m: Row) -> None:
     """A message has been packed."""
     _count_message(s, m, 1)
@@ -115,7 +115,7 @@ def note_departure(s: Run, m: Row) -> None:
         moment.largest = max(moment.largest, m.n)
 
 
-@njit
+@kernel
 def _count_message(s: Run, m: Row, n: int) -> None:
     n_bytes = m.payload_bytes + s.header_bytes
     pair = traffic(s)[m.source * s.processors + m.destination]
@@ -125,14 +125,14 @@ def _count_message(s: Run, m: Row, n: int) -> None:
     sizes(s)[m.kind * SIZES + min(digits, SIZES - 1)] += n
 
 
-@njit
+@kernel
 def _moment(s: Run, time_ps: int) -> Row:
     """The bin that ends at, or after, a time."""
     _widen(s, time_ps)
     return moments(s)[max(time_ps - 1, 0) >> s.bin_width]
 
 
-@njit
+@kernel
 def _widen(s: Run, time_ps: int) -> None:
     """See to it that there are bins up to a time."""
     while time_ps > BINS << s.bin_width:
@@ -144,7 +144,7 @@ def _widen(s: Run, time_ps: int) -> None:
             _join_moments(moments(s), i)
 
 
-@njit
+@kernel
 def _join_pairs(bins: Ints, first: int) -> None:
     half, end = first + BINS // 2, first + BINS
     for i in range(BINS // 2):
@@ -152,7 +152,7 @@ def _join_pairs(bins: Ints, first: int) -> None:
     bins[half:end] = 0
 
 
-@njit
+@kernel
 def _join_moments(of_all: NDArray[np.void], i: int) -> None:
     to = of_all[i]
     if 2 * i < BINS:
@@ -169,7 +169,7 @@ def end_counting(runs: NDArray[np.void]) -> None:
     s: Run = runs[0]
     for me in range(s.processors):
         count_work(s, me, s.last_ray_ps)
-    for row in range(messages_marks(s)[USED]):
+    for row in range(message_marks(s)[USED]):
         m = messages(s)[row]
         if m.kind != NONE and m.depart_ps > s.last_ray_ps:
             _count_message(s, m, -1)

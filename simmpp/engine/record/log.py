@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit_reading as njit
+from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.arrays.views import log, messages, pes
 
@@ -30,16 +30,15 @@ The rows of a PE come in the order of time; what comes later ends later.
 """
 
 
-@njit
-def note_arrival(runs: NDArray[np.void], message: int) -> None:
+@kernel
+def note_arrival(s: Run, message: int) -> None:
     """A message reached its destination's inbox."""
-    s: Run = runs[0]
     m = messages(s)[message]
     _note(s, m.destination, ARRIVAL, 0, m.n, m.arrival_ps, m.arrival_ps)
     _note_message(s, message, m.source)
 
 
-@njit
+@kernel
 def note_receive(s: Run, me: int, message: int, begin_ps: int, end_ps: int) -> None:
     """A message was unpacked."""
     m = messages(s)[message]
@@ -47,7 +46,7 @@ def note_receive(s: Run, me: int, message: int, begin_ps: int, end_ps: int) -> N
     _note_message(s, message, m.source)
 
 
-@njit
+@kernel
 def note_compute(s: Run, me: int, tests: int, finished: int, begin_ps: int, end_ps: int) -> None:
     """Tests were made, after a look into the inbox, and rays finished."""
     _note(s, me, COMPUTE, tests, finished, begin_ps, end_ps)
@@ -55,7 +54,7 @@ def note_compute(s: Run, me: int, tests: int, finished: int, begin_ps: int, end_
     event.other, event.kind, event.number, event.payload_bytes = NONE, NONE, NONE, 0
 
 
-@njit
+@kernel
 def note_send(s: Run, me: int, message: int, begin_ps: int) -> None:
     """A message was packed; it departs when that is done."""
     m = messages(s)[message]
@@ -63,7 +62,7 @@ def note_send(s: Run, me: int, message: int, begin_ps: int) -> None:
     _note_message(s, message, m.destination)
 
 
-@njit
+@kernel
 def _note(s: Run, pe: int, event: int, tests: int, rays: int, begin_ps: int, end_ps: int) -> None:
     row = log(s)[s.n_logged]
     row.time_ps, row.end_ps, row.event = begin_ps, end_ps, event
@@ -72,7 +71,7 @@ def _note(s: Run, pe: int, event: int, tests: int, rays: int, begin_ps: int, end
     s.n_logged += 1
 
 
-@njit
+@kernel
 def _note_message(s: Run, message: int, other: int) -> None:
     m, event = messages(s)[message], log(s)[s.n_logged - 1]
     event.other, event.kind = other, m.kind

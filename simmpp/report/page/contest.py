@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 from statistics import fmean
 
+from simmpp.policy.registry import CEILING
 from simmpp.report.page.points import Points
-from simmpp.run.point import CEILING
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval

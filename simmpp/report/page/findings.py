@@ -9,6 +9,7 @@ from itertools import groupby
 from statistics import median
 
 from simmpp.common.units import counted
+from simmpp.policy.registry import REFERENCE
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.contest import (
@@ -22,7 +23,6 @@ from simmpp.report.page.contest import (
     replicated_policies,
 )
 from simmpp.report.page.points import Points
-from simmpp.run.point import REFERENCE
 
 
 @dataclass(frozen=True)

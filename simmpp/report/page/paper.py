@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from simmpp.common.files import Row
+from simmpp.policy.registry import REFERENCE
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
-from simmpp.run.point import REFERENCE
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
 from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, RowIndex

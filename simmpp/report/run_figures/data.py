@@ -11,7 +11,15 @@ from simmpp.common.compiled import njit
 from simmpp.engine.record.counters import Ints
 from simmpp.engine.residency import resident_bytes
 from simmpp.engine.result import Result
-from simmpp.machine.torus import DIRECTIONS, ROWS_PER_PE, hops, link_towards
+from simmpp.machine.topology import (
+    Network,
+    Topology,
+    hops,
+    network_of,
+    next_link,
+    topology_of,
+)
+from simmpp.machine.torus import DIRECTIONS, ROWS_PER_PE
 from simmpp.run.point import Point, PolicyRun
 
 MARKS = (95, 99, 100)
@@ -93,7 +101,7 @@ def motion_of(point: Point, run: PolicyRun) -> Motion:
     counters = result.counters
     if counters is None:
         raise ValueError("pictures of a run: expected one that recorded its counters")
-    bin_ps = counters.bin_ps
+    topology, bin_ps = topology_of(machine), counters.bin_ps
     n_bins = max(1, -(-result.makespan_ps // bin_ps))
     compute_ps = counters.compute_ps[:, :n_bins]
     communication_ps = counters.communication_ps[:, :n_bins]
@@ -115,8 +123,8 @@ def motion_of(point: Point, run: PolicyRun) -> Motion:
         messages=counters.messages,
         bytes=counters.bytes,
         sizes=counters.sizes[:, : largest + 1],
-        hops=hops_of(machine.shape, counters.messages),
-        link_bytes=bytes_over_links(machine.shape, counters.bytes),
+        hops=hops_of(topology, counters.messages),
+        link_bytes=by_direction(bytes_over_links(topology, counters.bytes)),
         load=counters.load_ps / max(result.makespan_ps, 1),
         resident_bytes=resident,
         transient_bytes=result.pe_peak_object_bytes - resident,
@@ -135,28 +143,40 @@ def marks_of(finished: Ints, edges_ps: Ints) -> dict[int, int]:
     return {s: int(edges_ps[1 + np.searchsorted(done, n)]) for s, n in needed.items()}
 
 
+def bytes_over_links(topology: Topology, traffic: Ints) -> Ints:
+    """Bytes over each link and port, of the bytes (nb, nb) from PE to PE."""
+    total = np.zeros(topology.n_links, np.int64)
+    _add_over_links(network_of(topology), traffic, total)
+    return total
+
+
 @njit
-def bytes_over_links(shape: tuple[int, int, int], traffic: Ints) -> Ints:
-    """Bytes over each link (nb, 6), of the bytes (nb, nb) from PE to PE."""
-    total = np.zeros(ROWS_PER_PE * len(traffic), np.int64)
+def _add_over_links(network: Network, traffic: Ints, total: Ints) -> None:
     for source in range(len(traffic)):
         for destination in range(len(traffic)):
             here = source
             while here != destination and traffic[source, destination] > 0:
-                link, here = link_towards(shape, here, destination)
+                link, here = next_link(network, here, destination)
                 total[link] += traffic[source, destination]
-    return total.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
+
+
+def by_direction(of_links: Ints) -> Ints:
+    """The links of a torus by PE and direction (nb, 6), without the ports."""
+    return of_links.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
+
+
+def hops_of(topology: Topology, messages: Ints) -> Ints:
+    """How many of the messages (nb, nb) crossed 0, 1, ... links."""
+    counts = np.zeros(topology.diameter + 1, np.int64)
+    _count_hops(network_of(topology), messages, counts)
+    return counts
 
 
 @njit
-def hops_of(shape: tuple[int, int, int], messages: Ints) -> Ints:
-    """How many of the messages (nb, nb) crossed 0, 1, ... links."""
-    x, y, z = shape
-    counts = np.zeros(x // 2 + y // 2 + z // 2 + 1, np.int64)
+def _count_hops(network: Network, messages: Ints, counts: Ints) -> None:
     for source in range(len(messages)):
         for destination in range(len(messages)):
-            counts[hops(x, y, z, source, destination)] += messages[source, destination]
-    return counts
+            counts[hops(network, source, destination)] += messages[source, destination]
 
 
 def pixel_costs(point: Point) -> Ints:

@@ -24,7 +24,7 @@ from simmpp.placement.place import rotated
 from simmpp.placement.placement import Placement, PlacementRules
 from simmpp.placement.residents import resident_count
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.run.point import REFERENCE
+from simmpp.policy.registry import REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.studies.curve.smooth import smooth
 from simmpp.workload.workload import Workload

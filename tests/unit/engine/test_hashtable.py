@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
+import numba
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.engine.arrays import hashtable as tables
-from simmpp.engine.arrays.layout import NONE, WANT
+from simmpp.engine.arrays import hashtable
+from simmpp.engine.arrays.layout import MISS, NONE
 
+
+def from_python(kernel: Any) -> Any:
+    """A function that Python can call."""
+
+    @numba.njit
+    def call(*arguments: Any) -> Any:
+        return kernel(*arguments)
+
+    return call
+
+
+NAMES = ("find", "add", "remove", "first", "following", "append", "unlink", "sort_by_key")
+tables = SimpleNamespace(**{name: from_python(getattr(hashtable, name)) for name in NAMES})
 CAPACITY = 12
 keys = st.integers(0, 2**40) | st.integers(0, 20)
 
 
-def new_table() -> tables.Table:
-    return tables.Table(
-        np.zeros(16, np.int32), np.zeros(CAPACITY, WANT), np.array([NONE, 0], np.int32)
-    )
+def new_table() -> hashtable.Table:
+    return hashtable.Table(np.zeros(16, np.int32), np.zeros(CAPACITY, MISS), np.zeros(2, np.int32))
 
 
 @given(st.lists(st.tuples(st.booleans(), keys)))
@@ -43,7 +58,7 @@ def test_a_full_table_says_so() -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 2), st.integers(0, 7))))
 def test_linked_lists_keep_their_order(operations: list[tuple[int, int]]) -> None:
-    lists = tables.Lists(np.zeros(6, np.int32), np.zeros(16, np.int32))
+    lists = hashtable.Lists(np.zeros(6, np.int32), np.zeros(16, np.int32))
     expected: list[list[int]] = [[], [], []]
     for which, item in operations:
         holder = next((k for k in range(3) if item in expected[k]), None)

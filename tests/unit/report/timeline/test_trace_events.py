@@ -18,6 +18,7 @@ from hypothesis import given, settings
 
 from simmpp.engine import initial as start
 from simmpp.engine import state
+from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.report.timeline.recorder import TimelineRecorder
 from simmpp.report.timeline.slices import Window
@@ -39,7 +40,7 @@ def record(path: Path, case: Case, engine: str = "compiled", window: Window | No
             case.policy,
             engine=engine,
             ready_order=case.ready_order,
-            log=recorder.begin(case.policy),
+            record=Recording(log=recorder.begin(case.policy)),
         )
         recorder.end(PolicyRun(case.policy, result, named=True, wall_s=0.0))
     return result.makespan_ps

@@ -1,0 +1,60 @@
+"""How long a message is on its way: at once on a network without contention, else link by link."""
+
+from __future__ import annotations
+
+from simmpp.common.compiled import kernel
+from simmpp.engine.arrays.layout import NONE, Row, Run
+from simmpp.engine.arrays.views import free_ps, messages, topology
+from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.topology import hops, next_link, port
+from simmpp.machine.transfer import transfer_ps
+
+
+@kernel
+def depart(s: Run, m: Row) -> None:
+    """A message leaves its sender: when it arrives, or when its head is at the first link."""
+    n_bytes = m.payload_bytes + s.header_bytes
+    if s.contends:
+        inject(s, m)
+    else:
+        n_hops = hops(topology(s), m.source, m.destination)
+        flight_ps = s.latency_ps + n_hops * s.hop_latency_ps + transfer_ps(n_bytes, s.bytes_per_s)
+        m.arrival_ps = m.depart_ps + flight_ps
+
+
+@kernel
+def inject(s: Run, m: Row) -> None:
+    """Take the port of the sender, which no one else uses and which its messages reach in order.
+
+    So it can be taken now, before the clock says so. Any other port or link is taken when the head
+    gets there: a message that departs later may be there sooner.
+    """
+    m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
+    m.at, m.arrival_ps = m.source, NONE
+    m.head_ps = _occupy(s, port(topology(s), m.source, 0), m.depart_ps, m.busy_ps) + s.latency_ps
+
+
+@kernel
+def move_head(s: Run, message: int) -> int:
+    """The head of a message is at a link or at the last port: it takes it as soon as that is free.
+
+    Returns when the head is at the next one, or when the message arrives, which is known then.
+    """
+    m = messages(s)[message]
+    if m.at == m.destination:
+        m.arrival_ps = _occupy(s, port(topology(s), m.at, 1), m.head_ps, m.busy_ps) + m.busy_ps
+        return m.arrival_ps
+    link, m.at = next_link(topology(s), m.at, m.destination)
+    m.head_ps = _occupy(s, link, m.head_ps, m.busy_ps) + s.hop_latency_ps
+    return m.head_ps
+
+
+@kernel
+def _occupy(s: Run, row: int, now_ps: int, busy_ps: int) -> int:
+    """Keep a link or port busy from when it is free; returns when that is."""
+    start_ps = max(now_ps, free_ps(s)[row])
+    # A queue can grow beyond the clock in one instant of a PE, after which the engine looks at it.
+    if start_ps > CLOCK_LIMIT_PS:
+        raise OverflowError("the clock")
+    free_ps(s)[row] = start_ps + busy_ps
+    return start_ps
