@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import Row, Run
+from simmpp.engine.arrays.records import Row, Run
 from simmpp.engine.arrays.views import heap
 
 PE_BITS = 31

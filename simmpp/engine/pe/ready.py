@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import NONE, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, pes, rays
 
 
