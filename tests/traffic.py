@@ -12,7 +12,7 @@ from by_hand import BYTE_PER_PS, OBJECT, case_of
 from numpy.typing import NDArray
 from oracles.hop_by_hop import Sent
 
-from simmpp.engine.arrays.layout import MESSAGE
+from simmpp.engine.arrays.records import MESSAGE
 from simmpp.engine.arrays.views import heap, messages
 from simmpp.engine.compiled_engine import move_first
 from simmpp.engine.event_heap import HEAD, pop, push

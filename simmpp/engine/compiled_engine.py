@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.layout import NONE, Row, Run
+from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
 from simmpp.engine.event_heap import HEAD, INSTANT, PE_BITS, pop, push, replace_first
 from simmpp.engine.local_only import run_alone

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import Row, Run
+from simmpp.engine.arrays.records import Row, Run
 from simmpp.engine.arrays.views import heap
 
 PE_BITS = 31
 """A PE's number is an int32: the rank of an arrival is destination * 2^31 + source."""
+# Arrivals come first: a PE that begins in the same instant finds them in its inbox.
 INSTANT = 1 << 2 * PE_BITS
 """Rank of a PE's own instants, above all pairs of PEs."""
+# Heads come last, when all messages that the instant sends are known: a message that costs nothing
+# may be at its link in the instant in which it was packed, and must wait for its turn by source.
 HEAD = INSTANT + (1 << 32)
 """Rank of heads of messages that come to a port or link, above all instants."""
 

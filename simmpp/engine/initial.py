@@ -9,16 +9,8 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.layout import (
-    COPY,
-    LOAD_INFO,
-    MACHINE,
-    NONE,
-    PIGGYBACK,
-    Run,
-    Sizes,
-    allocated,
-)
+from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
+from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PIGGYBACK, Run
 from simmpp.engine.arrays.views import pes, rays
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS

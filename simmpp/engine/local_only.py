@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.engine.arrays.layout import BEGIN, NONE, Row, Run
+from simmpp.engine.arrays.records import BEGIN, NONE, Row, Run
 from simmpp.engine.arrays.views import (
     child_offsets,
     itinerary_objects,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import NONE, Row, Run
+from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import free_ps, messages, topology
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.topology import hops, next_link, port

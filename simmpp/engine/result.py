@@ -49,14 +49,14 @@ class Result:
     log: NDArray[np.void] | None = None
     """Event log, if asked for (see ``engine.log``)."""
     counters: Counters | None = None
-    """With record_counters: what happened when, and who sent how much to whom."""
+    """With ``Recording.counters``: what happened when, and who sent how much to whom."""
     ray_hops: NDArray[np.int32] | None = None
-    """(n,) int32, with record_hops: links crossed for each ray, by itself in a message or by the
-    requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
+    """(n,) int32, with ``Recording.hops``: links crossed for each ray, by itself in a message or by
+    the requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
     tested_rays: NDArray[np.int32] | None = None
-    """(tests,) int32, with record_tests: the ray of each test in the order performed."""
+    """(tests,) int32, with ``Recording.tests``: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None
-    """(tests,) int32, with record_tests: the object of each test."""
+    """(tests,) int32, with ``Recording.tests``: the object of each test."""
 
     @property
     def peak_rays(self) -> int:

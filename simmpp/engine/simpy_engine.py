@@ -19,7 +19,7 @@ from simpy.events import Event
 
 from simmpp.common.compiled import entry_point, njit
 from simmpp.common.errors import ModelError
-from simmpp.engine.arrays.layout import BEGIN, MESSAGE, NONE
+from simmpp.engine.arrays.records import BEGIN, MESSAGE, NONE
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.step import SLEEP, step
 from simmpp.engine.record.log import note_arrival

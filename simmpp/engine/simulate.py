@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import NONE
+from simmpp.engine.arrays.records import NONE
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state

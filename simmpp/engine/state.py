@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import entry_point, kernel, njit
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import ARRAYS, BINS, COUNTERS, PARAMETERS, REPORT, RUN, SIZES, Run
+from simmpp.engine.arrays.layout import ARRAYS, COUNTERS, PARAMETERS, REPORT, RUN
+from simmpp.engine.arrays.records import BINS, SIZES, Run
 from simmpp.engine.arrays.views import message_marks
 from simmpp.engine.record.counters import Counters, end_counting
 from simmpp.engine.record.log import LOG_ROWS, Sink, hand_on, hand_on_last

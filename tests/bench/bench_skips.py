@@ -23,7 +23,7 @@ import numpy as np
 import simmpp
 from simmpp.config.config import config_from_mapping
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import MISS
+from simmpp.engine.arrays.records import MISS
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state
 from simmpp.sweeps.plan import plan_of

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
-from simmpp.engine.arrays.layout import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, SEND, SIZES
+from simmpp.engine.arrays.records import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, SEND, SIZES
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from simmpp.engine import initial as start
 from simmpp.engine import state
-from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
+from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import NONE, Row
+from simmpp.engine.arrays.records import NONE, Row
 
 FREE, USED = 0, 1
 

@@ -14,7 +14,8 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
 from simmpp.engine.arrays.hashtable import Lists, Table
-from simmpp.engine.arrays.layout import ARRAYS, Run
+from simmpp.engine.arrays.layout import ARRAYS
+from simmpp.engine.arrays.records import Run
 
 
 def _type_of(name: str) -> types.Array:

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, clear, first, following, sort_by_key
-from simmpp.engine.arrays.layout import EXACT, NO_INFO, NONE, Row, Run
+from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, add, append, find, link, remove, unlink
-from simmpp.engine.arrays.layout import NONE, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.layout import NONE, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, pes, rays
 
 
@@ -45,6 +45,7 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
         for ray_number in range(child, end):
             rays(s)[ray_number].next = ray_number + 1
         make_ready(s, me, child, end - 1, end - child)
+    # The ray itself leaves; what it has hit brings forth its children here, whoever owns it.
     pe.load += end - child - 1
     pe.peak_rays = max(pe.peak_rays, pe.load)
     s.rays_done += 1

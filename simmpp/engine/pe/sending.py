@@ -6,7 +6,7 @@ from typing import Any
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import take
-from simmpp.engine.arrays.layout import NONE, PACK, Run
+from simmpp.engine.arrays.records import NONE, PACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     message_marks,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find, give_back
-from simmpp.engine.arrays.layout import BEGIN, DISPATCH, NONE, UNPACK, Run
+from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     itinerary_objects,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.hashtable import USED
-from simmpp.engine.arrays.layout import BINS, NONE, SIZES, Row, Run
+from simmpp.engine.arrays.records import BINS, NONE, SIZES, Row, Run
 from simmpp.engine.arrays.views import (
     communication_bins,
     compute_bins,

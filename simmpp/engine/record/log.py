@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
+from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.arrays.views import log, messages, pes
 
 LOG_ROWS = 1 << 13

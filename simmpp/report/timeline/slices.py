@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.arrays.layout import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
+from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
 from simmpp.engine.record.log import EVENT_KINDS
 
 IDLE, PROBE = len(EVENT_KINDS), len(EVENT_KINDS) + 1

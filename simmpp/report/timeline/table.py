@@ -10,7 +10,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from simmpp.engine.arrays.layout import NONE
+from simmpp.engine.arrays.records import NONE
 from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.report.timeline.slices import SLICE_KINDS, Rows, TimelinePart
 

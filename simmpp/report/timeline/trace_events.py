@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from simmpp.engine.arrays.layout import COMPUTE, NONE
+from simmpp.engine.arrays.records import COMPUTE, NONE
 from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.report.timeline.slices import (
     COMMUNICATION,

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.engine.arrays import hashtable
-from simmpp.engine.arrays.layout import MISS, NONE
+from simmpp.engine.arrays.records import MISS, NONE
 
 
 def from_python(kernel: Any) -> Any:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simmpp.engine.arrays.layout import COMPUTE, EVENT
+from simmpp.engine.arrays.records import COMPUTE, EVENT
 from simmpp.report.timeline.slices import IDLE, PROBE, Timeline, Window
 
 

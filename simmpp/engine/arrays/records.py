@@ -1,0 +1,170 @@
+"""The records that arrays of a run are made of, field by field, and the words of their numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Run = Any
+"""A RUN record; numba's type, which Python has no name for."""
+Row = Any
+"""A record of one of the arrays."""
+
+NONE = -1
+
+PE = np.dtype(
+    [
+        ("first", "i4"),  # list of ready rays, linked through RAY.next; NONE: empty
+        ("last", "i4"),
+        ("n_ready", "i8"),
+        ("load", "i8"),  # rays held: ready + waiting
+        ("settled_load", "i8"),  # load at the end of the last ended activity
+        ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
+        ("messages_sent", "i8"),
+        ("busy_until_ps", "i8"),
+        ("compute_ps", "i8"),
+        ("communication_ps", "i8"),
+        ("held_bytes", "i8"),  # resident and fetched objects
+        ("peak_rays", "i8"),
+        ("peak_bytes", "i8"),
+        ("peak_object_bytes", "i8"),  # of held_bytes
+        ("n_transient", "i4"),
+        ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
+    ],
+    align=True,
+)
+RAY = np.dtype(
+    [
+        ("tested", "i4"),  # objects of its itinerary that it has been tested against
+        ("next", "i4"),  # next ray of the list that this ray is in
+        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("hops", "i4"),  # with record_hops: links crossed for it
+    ],
+    align=True,
+)
+MISS = np.dtype(
+    [
+        ("key", "i8"),  # PE * N + object
+        ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
+        ("chain", "i4"),
+        ("first", "i4"),  # waiting rays, oldest first; NONE: none
+        ("last", "i4"),
+        ("n", "i4"),
+        ("unasked", "i4"),  # waiting rays that no request covers
+        ("requests", "i4"),  # in flight
+        ("pinned", "i4"),  # released rays that have not made their test yet
+        ("transient", "i4"),  # 1: in transient memory
+        ("peer", "i4"),  # row of the owner in ``peers``, if the policy sends
+        ("hops", "i4"),  # links to the owner, with record_hops
+    ],
+    align=True,
+)
+PEER = np.dtype(
+    [
+        ("key", "i8"),  # PE * nb + the other PE
+        ("load", "i8"),  # last heard; NONE if never
+        ("heard_ps", "i8"),
+        ("sent_ps", "i8"),  # departure of the last message to it, 0 if none
+        ("chain", "i4"),
+        ("sendable", "i4"),  # rays waiting for its objects that may be sent
+        ("exchanged", "i4"),  # 1: rays or objects went from one to the other
+    ],
+    align=True,
+)
+MESSAGE = np.dtype(
+    [
+        ("depart_ps", "i8"),
+        ("number", "i8"),  # the sender's send number
+        ("load", "i8"),  # the sender's, at packing, without the rays in the message
+        ("payload_bytes", "i8"),
+        ("arrival_ps", "i8"),
+        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
+        ("head_ps", "i8"),  # when its head is at the next link or port,
+        ("at", "i4"),  # and the PE where that is
+        ("destination", "i4"),
+        ("source", "i4"),
+        ("chain", "i4"),
+        ("next", "i4"),  # in the inbox
+        ("obj", "i4"),
+        ("first", "i4"),  # rays
+        ("last", "i4"),
+        ("n", "i4"),
+        ("kind", "i4"),  # NONE: a free place
+    ],
+    align=True,
+)
+COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
+"""Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
+
+EVENT = np.dtype(
+    [
+        ("time_ps", "i8"),  # when a message arrives, or the PE begins
+        ("end_ps", "i8"),  # when the PE is done, a message sent departs; of an arrival: time_ps
+        ("number", "i8"),  # the sender's send number; NONE if there is no message or it never left
+        ("payload_bytes", "i8"),
+        ("tests", "i8"),
+        ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
+        ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
+        ("rays", "i4"),  # in the message; finished by a COMPUTE
+        ("load", "i4"),  # of the PE, when it is done
+        ("ready", "i4"),  # rays of the load that are ready then; the others wait
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("kind", "i2"),  # of the message; NONE without one
+    ]
+)
+"""One row of the event log, a cache line."""
+
+EVENT_KEY = np.dtype(
+    [
+        ("time_ps", "i8"),
+        ("rank", "i8"),  # destination * 2^31 + source, INSTANT + PE or HEAD + source
+        ("number", "i8"),  # the sender's send number, or the PE's instants so far
+        ("message", "i8"),  # that arrives or whose head moves; NONE at an instant
+    ]
+)
+"""What is going to happen in the compiled event loop, and its place among the rest."""
+PROCESS = np.dtype(
+    [
+        ("first", "i4"),  # inbox of the PE, linked through MESSAGE.next; NONE: empty
+        ("last", "i4"),
+        ("instants", "i8"),
+        ("phase", "i4"),  # of the next instant
+        ("asleep", "i4"),
+    ]
+)
+"""A PE as the compiled event loop sees it."""
+
+BINS = 1024
+"""Bins of time; a run fills more than half of them."""
+SIZES = 48
+"""Sizes of messages are counted by powers of two."""
+
+MOMENT = np.dtype(
+    [
+        ("finished", "i8"),  # rays finished by computations that ended in the bin
+        ("batches", "i8"),  # messages of rays that departed in it,
+        ("rays", "i8"),  # rays in them,
+        ("largest", "i8"),  # rays in the largest
+    ]
+)
+"""What all PEs together did in a bin."""
+TRAFFIC = np.dtype([("messages", "i8"), ("bytes", "i8")])
+"""From one PE to another, with headers."""
+SLICE = np.dtype(
+    [
+        ("begin_ps", "i8"),  # of the PE's latest work: communication, then
+        ("tests_ps", "i8"),  # tests and rays from here on
+        ("end_ps", "i8"),
+        ("load", "i8"),
+        ("since_ps", "i8"),  # when the load became that
+        ("load_ps", "i8"),  # rays held times how long, until then
+    ]
+)
+"""What is counted of a PE when it works again, or the run is over: it may end before the work."""
+
+PIGGYBACK, EXACT, NO_INFO = range(3)
+LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
+BEGIN, DISPATCH = range(2)
+ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
+PACK, UNPACK = 0, 4
