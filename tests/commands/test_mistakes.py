@@ -100,7 +100,7 @@ MISTAKES = [
     ("report none", "DIR: value 'none': expected a folder"),
     ("compare none none", "BEFORE: value 'none': expected a folder"),
     ("reproduce --resolution 0", "--resolution: value '0': expected an integer from 1 to 16384"),
-    ("scene tetra:0", "the size of tetra must be at least 1, got 0"),
+    ("scene tetra:0", "scene.size: value 0: expected an integer from 1 to what the scene can have"),
     ("scene none.nff", "none.nff: can't read the file: No such file or directory"),
     ("scene tetra:1 --preview q.jpg", "--preview: value 'q.jpg': expected a file .png"),
     ("scene tetra:1 --nff q.txt", "--nff: value 'q.txt': expected a file .nff"),
