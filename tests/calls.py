@@ -30,8 +30,7 @@ def refused(*arguments: str) -> str:
     """The one line of a command that exits with 2, without what all such lines begin with."""
     done = simmpp(*arguments)
     assert (done.exit_code, done.stdout) == (2, ""), done.output
-    first_use = "simmpp: compiling for this machine"
-    (line,) = (line for line in done.stderr.splitlines() if not line.startswith(first_use))
+    (line,) = done.stderr.splitlines()
     start, _, message = line.partition("simmpp: error: ")
     assert start == ""
     return message
