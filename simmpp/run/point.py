@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TypedDict
+from functools import partial
 
 from simmpp.common.places import misplaced
 from simmpp.config.config import Config
@@ -86,16 +86,7 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
     if REFERENCE not in names:
         return [(PolicyParameters(REFERENCE), False), *chosen]
-    return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
-
-
-class Records(TypedDict):
-    """What a run notes besides its counters."""
-
-    log: bool | Sink
-    record_tests: bool
-    record_counters: bool
-    record_hops: bool
+    return sorted(chosen, key=lambda pair: pair[0].name != REFERENCE)
 
 
 def run_point(
@@ -112,40 +103,23 @@ def run_point(
     event log of a policy's run, if anything. ``progress(title, rays left)`` is
     called now and then.
     """
-    for parameters, named in policies_of(point.config):
-        records: Records = {
-            "log": log_of(parameters) or False,
-            "record_tests": record_tests,
-            "record_counters": record_counters,
-            "record_hops": record_counters,
-        }
-        yield _run(point, parameters, named, records, progress)
-
-
-def _run(
-    point: Point,
-    parameters: PolicyParameters,
-    named: bool,
-    records: Records,
-    progress: Callable[[str, int], None] | None,
-) -> PolicyRun:
-    def report(rays_left: int) -> None:
-        if progress is not None:
-            progress(parameters.title, rays_left)
-
     settings = point.config.settings
-    began_s = time.perf_counter()
-    result = simulate(
-        point.workload,
-        point.machine,
-        point.placement,
-        parameters,
-        engine=settings.engine,
-        ready_order=settings.ready_order,
-        progress=report,
-        **records,
-    )
-    return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
+    for parameters, named in policies_of(point.config):
+        began_s = time.perf_counter()
+        result = simulate(
+            point.workload,
+            point.machine,
+            point.placement,
+            parameters,
+            engine=settings.engine,
+            ready_order=settings.ready_order,
+            log=log_of(parameters) or False,
+            record_tests=record_tests,
+            record_counters=record_counters,
+            record_hops=record_counters,
+            progress=progress and partial(progress, parameters.title),
+        )
+        yield PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 
 
 def reference_of(runs: list[PolicyRun]) -> PolicyRun:
