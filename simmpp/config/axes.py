@@ -17,8 +17,8 @@ UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "chec
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""
-SAME = (("memory.fraction", "memory.bytes"),)
-"""Keys that say the same in two ways."""
+SAME = {"memory.fraction": "memory.bytes", "memory.bytes": "memory.fraction"}
+"""Keys that say the same in another way: setting one takes the other back."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,8 @@ def _refuse_twice(axes: Iterable[Axis]) -> None:
         for key in one:
             if key in other:
                 raise ConfigError(f"{key} is swept twice: expected one axis with it")
-        for a, b in SAME:
-            if (a in one and b in other) or (b in one and a in other):
-                raise ConfigError(f"expected {a} or {b}, got both")
+            if SAME.get(key) in other:
+                raise ConfigError(f"expected {' or '.join(SAME)}, got both")
 
 
 def keys_of(axis: Axis) -> list[str]:

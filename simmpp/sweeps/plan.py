@@ -185,12 +185,11 @@ def refuse_overruled(config: Config) -> None:
         return
     swept = _swept_everywhere(config)
     _refuse_set(config.source, swept)
-    for pair in SAME:
-        for key, other in (pair, pair[::-1]):
-            path = tuple(key.split("."))
-            if other in swept and _given(config.source.data, path):
-                problem = f"expected none: {other} is swept, and says the same in another way"
-                raise misplaced(path, problem, config.places)
+    for key, other in SAME.items():
+        path = tuple(key.split("."))
+        if other in swept and _given(config.source.data, path):
+            problem = f"expected none: {other} is swept, and says the same in another way"
+            raise misplaced(path, problem, config.places)
 
 
 def _swept_everywhere(config: Config) -> list[str]:
