@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import Expect, Strict, Text, mistake, one_of, parsed_by, structure
@@ -97,25 +97,18 @@ Objects = Annotated[str | dict[str, int], parsed_by(_objects), _OBJECTS]
 class SceneSettings(Strict):
     """What is rendered: one of SOURCES. Text such as ``mountain:5`` is short for it."""
 
-    spd: Annotated[str, *one_of(*known_names())] | None = Field(
-        default=None, description="a scene of the Standard Procedural Databases (Haines 1987)"
-    )
-    size: Annotated[int, parsed_by(_size), Expect(SIZE)] | None = Field(
-        default=None, description="size of that scene; the SPD's own when not given"
-    )
-    nff: Text | None = Field(
-        default=None, description="an NFF file, relative to the configuration's folder"
-    )
-    mesh: Text | None = Field(
-        default=None, description="a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"
-    )
-    objects: Objects | None = Field(
-        default=None, description="how a mesh is cut into objects; components when not given"
-    )
-
-    workload: Text | None = Field(
-        default=None, description="rays of another renderer, in Parquet or npz, in place of a scene"
-    )
+    spd: Annotated[str, *one_of(*known_names())] | None = None
+    """a scene of the Standard Procedural Databases (Haines 1987)"""
+    size: Annotated[int, parsed_by(_size), Expect(SIZE)] | None = None
+    """size of that scene; the SPD's own when not given"""
+    nff: Text | None = None
+    """an NFF file, relative to the configuration's folder"""
+    mesh: Text | None = None
+    """a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"""
+    objects: Objects | None = None
+    """how a mesh is cut into objects; components when not given"""
+    workload: Text | None = None
+    """rays of another renderer, in Parquet or npz, in place of a scene"""
 
     @field_validator("size")
     @classmethod
