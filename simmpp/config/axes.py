@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.strict import is_line
 from simmpp.common.units import shown
 
 POINTS = "points"
@@ -111,7 +112,7 @@ def _row(label: str, keys: Sequence[str], value: object) -> Sequence[object]:
 def _named(values: Sequence[object]) -> Axis:
     axis: list[Choice] = []
     for value in values:
-        if not isinstance(value, dict) or not _is_name(value.get(NAME)):
+        if not isinstance(value, dict) or not is_line(value.get(NAME)):
             raise ConfigError(
                 f"{POINTS}: value {shown(value)}: expected a mapping with a name and the keys to "
                 "set, such as {name: small, processors: 8}"
@@ -123,7 +124,3 @@ def _named(values: Sequence[object]) -> Axis:
         if names.count(name) > 1:
             raise ConfigError(f"{POINTS}: two are called {name!r}: expected different names")
     return tuple(axis)
-
-
-def _is_name(value: object) -> bool:
-    return isinstance(value, str) and bool(value) and value.isprintable()

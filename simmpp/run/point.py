@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -122,11 +122,11 @@ def run_point(
         yield PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 
 
-def reference_of(runs: list[PolicyRun]) -> PolicyRun:
+def reference_of(runs: Sequence[PolicyRun]) -> PolicyRun:
     """The run that profits are measured against."""
     return next(run for run in runs if run.parameters.name == REFERENCE)
 
 
-def ceiling_of(runs: list[PolicyRun]) -> PolicyRun | None:
+def ceiling_of(runs: Sequence[PolicyRun]) -> PolicyRun | None:
     """The run with the whole scene in every memory, if it is finished."""
     return next((run for run in runs if run.all_resident), None)

@@ -18,8 +18,17 @@ from typing import Annotated, Any
 from pydantic import ValidationInfo, field_validator, model_validator
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Expect, Strict, Text, mistake, one_of, parsed_by, structure
-from simmpp.common.units import shown
+from simmpp.common.strict import (
+    Expect,
+    Strict,
+    Text,
+    is_line,
+    mistake,
+    one_of,
+    only,
+    parsed_by,
+    structure,
+)
 from simmpp.scene.cut import OBJECTS, cut_named
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import load_nff
@@ -72,11 +81,9 @@ SOURCES = {
 FILES = [key for key, kind in SOURCES.items() if kind.is_file]
 
 
-def _size(value: object) -> int:
-    """A size that some scene may have; the scene's generator knows the largest."""
-    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30:
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {SIZE}")
+def _is_size(value: object) -> bool:
+    """Could some scene have it? The scene's generator knows the largest."""
+    return isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30
 
 
 def _objects(value: Any) -> Any:
@@ -99,7 +106,7 @@ class SceneSettings(Strict):
 
     spd: Annotated[str, *one_of(*known_names())] | None = None
     """a scene of the Standard Procedural Databases (Haines 1987)"""
-    size: Annotated[int, parsed_by(_size), Expect(SIZE)] | None = None
+    size: Annotated[int, *only(_is_size, Expect(SIZE))] | None = None
     """size of that scene; the SPD's own when not given"""
     nff: Text | None = None
     """an NFF file, relative to the configuration's folder"""
@@ -174,14 +181,13 @@ def _long_file(name: str) -> dict[str, object]:
     return {"nff" if name.lower().endswith(".nff") else "mesh": name}
 
 
-def _scene_or_text(value: object) -> object:
-    text = isinstance(value, str) and value and value.isprintable()
-    if text or isinstance(value, Mapping | os.PathLike):
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {A_SCENE}")
+def _is_scene_or_text(value: object) -> bool:
+    return is_line(value) or isinstance(value, Mapping | os.PathLike)
 
 
-SceneKey = Annotated[SceneSettings, parsed_by(long_scene), parsed_by(_scene_or_text)]
+SceneKey = Annotated[
+    SceneSettings, parsed_by(long_scene), only(_is_scene_or_text, Expect(A_SCENE))[0]
+]
 """The last validator is asked first."""
 
 
