@@ -52,9 +52,8 @@ def _print_one(key: Key) -> None:
 def _constants(key: Key) -> Iterator[tuple[str, str, str]]:
     """The value and the source of a machine's constant in each preset, the default one first."""
     constant = key.name.removeprefix(MACHINE)
-    for name in sorted(preset_names(), key=lambda each: each != DEFAULT_PRESET):
+    for name in sorted(preset_names(), key=lambda preset: preset != DEFAULT_PRESET):
         preset = load_preset(name)
-        written = {k: key.expect.write(number) for k, number in preset.constants.flat().items()}
-        written |= preset.texts
-        if constant != key.name and constant in written:
-            yield name, written[constant], preset.source(constant)
+        text = preset.text(constant, key.expect.write)
+        if text and constant != key.name:
+            yield name, text, preset.source(constant)

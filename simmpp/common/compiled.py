@@ -61,7 +61,16 @@ def njit(function: Function) -> Function:
     """
     if numba.config.DISABLE_JIT:
         return function
-    compiled: Any = _Compiled(function, targetoptions=OPTIONS | {"_nrt": True})
+    return _cached(function, {"_nrt": True})
+
+
+def njit_reading(function: Function) -> Function:
+    """:func:`njit` for functions that make no arrays: their calls count no references."""
+    return _cached(function, {"_nrt": False})
+
+
+def _cached(function: Function, options: dict[str, bool]) -> Function:
+    compiled: Any = _Compiled(function, targetoptions=OPTIONS | options)
     with _kept_for(function) as kept:
         if kept:
             compiled.enable_caching()

@@ -135,8 +135,15 @@ def mistake(problem: str) -> PydanticCustomError:
     return PydanticCustomError("simmpp", "{problem}", {"problem": problem})
 
 
-def _wrong(value: object, expected: str) -> ConfigError:
-    return ConfigError(f"value {shown(value)}: expected {expected}")
+def only(is_right: Callable[[object], bool], expected: Expect) -> tuple[BeforeValidator, Expect]:
+    """Marks of a value that is taken as it is, if it is right."""
+
+    def parse(value: object) -> object:
+        if not is_right(value):
+            raise ConfigError(f"value {shown(value)}: expected {expected.text}")
+        return value
+
+    return parsed_by(parse), expected
 
 
 def integer(least: int, most: int, unit: str = "") -> tuple[BeforeValidator, Expect]:
@@ -153,31 +160,18 @@ def in_words(words: tuple[str, ...]) -> str:
 
 def one_of(*words: str) -> tuple[BeforeValidator, Expect]:
     """Marks of one of these words, where no Literal can name them."""
-    expected = in_words(words)
-
-    def parse(value: object) -> str:
-        if not isinstance(value, str) or value not in words:
-            raise _wrong(value, expected)
-        return value
-
-    return parsed_by(parse), Expect(expected, {"enum": list(words)})
+    expected = Expect(in_words(words), {"enum": list(words)})
+    return only(lambda value: isinstance(value, str) and value in words, expected)
 
 
-def _switch(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise _wrong(value, "true or false")
-    return value
+def is_line(value: object) -> bool:
+    """Is it a text of one line?"""
+    return isinstance(value, str) and bool(value) and value.isprintable()
 
 
-def _text(value: object) -> str:
-    if not isinstance(value, str) or not value or not value.isprintable():
-        raise _wrong(value, "a text of one line")
-    return value
-
-
-Switch = Annotated[bool, parsed_by(_switch), Expect("true or false")]
+Switch = Annotated[bool, *only(lambda value: isinstance(value, bool), Expect("true or false"))]
 _LINE = {"type": "string", "minLength": 1}
-Text = Annotated[str, parsed_by(_text), Expect("a text of one line", _LINE)]
+Text = Annotated[str, *only(is_line, Expect("a text of one line", _LINE))]
 
 
 def fields_of(cls: type) -> dict[str, FieldInfo]:
@@ -225,7 +219,7 @@ def _explained(cls: type, errors: ValidationError, places: Mapping[KeyPath, Plac
     """The one line for the first of pydantic's errors."""
     # an unknown key is often the cause of a missing one
     error: ErrorDetails = min(
-        errors.errors(include_url=False), key=lambda each: each["type"] not in UNKNOWN
+        errors.errors(include_url=False), key=lambda error: error["type"] not in UNKNOWN
     )
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "simmpp":

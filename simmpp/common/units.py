@@ -6,6 +6,7 @@ No float holds a quantity: text becomes a fraction, and the fraction an integer,
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -75,27 +76,17 @@ def _in(text: str, unit: str) -> Fraction | None:
         return None
 
 
-def _is_zero(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value == 0
-
-
-def _quantity(value: object, unit: str, expected: str, most: int) -> Fraction:
-    if _is_zero(value):
+def _quantity(
+    value: object, unit: str, expected: str, most: int, in_text: Callable[[int], str]
+) -> Fraction:
+    if type(value) is int and value == 0:
         return Fraction(0)
     number = _in(value, unit) if isinstance(value, str) else None
     if number is None:
         raise ConfigError(f"value {shown(value)}: expected {expected}")
     if number > most:
-        raise ConfigError(
-            f"value {shown(value)}: expected {expected}, at most {_bound(most, unit)}"
-        )
+        raise ConfigError(f"value {shown(value)}: expected {expected}, at most {in_text(most)}")
     return number
-
-
-def _bound(most: int, unit: str) -> str:
-    if unit == "picosecond":
-        return format_ps(most)
-    return format_bytes(most) if unit == "byte" else format_bytes_per_s(most)
 
 
 def half_up(number: Fraction) -> int:
@@ -109,7 +100,7 @@ def picoseconds(value: object, most_ps: int = LONGEST_PS) -> int:
     Raises ConfigError for anything else but a time up to ``most_ps``, 10 s for the cost of one
     thing.
     """
-    return half_up(_quantity(value, "picosecond", A_TIME, most_ps))
+    return half_up(_quantity(value, "picosecond", A_TIME, most_ps, format_ps))
 
 
 def byte_count(value: object) -> int:
@@ -117,7 +108,7 @@ def byte_count(value: object) -> int:
 
     Raises ConfigError for anything else but a whole number of bytes.
     """
-    number = _quantity(value, "byte", A_SIZE, MOST_BYTES)
+    number = _quantity(value, "byte", A_SIZE, MOST_BYTES, format_bytes)
     if number.denominator != 1:
         raise ConfigError(f"value {shown(value)}: expected a whole number of bytes")
     return number.numerator
@@ -130,7 +121,8 @@ def bytes_per_second(value: object) -> int:
     """
     if value == "unlimited":
         return UNLIMITED
-    rate = half_up(_quantity(value, "byte / second", A_BANDWIDTH, MOST_BYTES_PER_S))
+    unit = "byte / second"
+    rate = half_up(_quantity(value, unit, A_BANDWIDTH, MOST_BYTES_PER_S, format_bytes_per_s))
     if rate < LEAST_BYTES_PER_S:
         raise ConfigError(f"value {shown(value)}: expected {A_BANDWIDTH}, at least 1 kB/s")
     return rate
@@ -170,8 +162,7 @@ _SIZES = [("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1)]
 
 def _with_prefix(number: int, units: list[tuple[str, int]]) -> str:
     unit, size = next((u for u in units if number >= u[1]), units[-1])
-    digits = f"{number / size:.6g}"
-    return f"{digits} {unit}"
+    return f"{number / size:.6g} {unit}"
 
 
 def _exactly(number: int, units: list[tuple[str, int]]) -> str:

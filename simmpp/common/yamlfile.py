@@ -12,22 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ruamel.yaml import YAML
+from ruamel.yaml import YAML, events
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.events import (
-    AliasEvent,
-    DocumentEndEvent,
-    DocumentStartEvent,
-    Event,
-    MappingEndEvent,
-    MappingStartEvent,
-    NodeEvent,
-    ScalarEvent,
-    SequenceEndEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-    StreamStartEvent,
-)
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import refuse_special
@@ -81,7 +67,7 @@ def parse_yaml(text: str, where: str = "") -> Document:
         raise ConfigError(f"expected at most {MOST_CHARACTERS} characters", where=where)
     document = Document(None, where)
     try:
-        _Reader(document, _events(text)).read()
+        _Reader(document, _stream(text)).read()
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         problem = " ".join(str(error.problem or error.context or "unreadable").split())
@@ -93,7 +79,7 @@ def parse_yaml(text: str, where: str = "") -> Document:
     return document
 
 
-def _events(text: str) -> Iterator[Event]:
+def _stream(text: str) -> Iterator[events.Event]:
     try:
         yield from YAML(typ="safe", pure=True).parse(text)
     except YAMLError:
@@ -105,39 +91,39 @@ def _events(text: str) -> Iterator[Event]:
 class _Reader:
     """Builds the data of a document from the parser's events."""
 
-    def __init__(self, document: Document, events: Iterator[Event]) -> None:
-        self.document, self.events = document, events
+    def __init__(self, document: Document, stream: Iterator[events.Event]) -> None:
+        self.document, self.stream = document, stream
 
     def read(self) -> None:
-        event = next(self.events)
-        while isinstance(event, StreamStartEvent | DocumentStartEvent):
-            event = next(self.events)
-        if isinstance(event, StreamEndEvent):
+        event = next(self.stream)
+        while isinstance(event, events.StreamStartEvent | events.DocumentStartEvent):
+            event = next(self.stream)
+        if isinstance(event, events.StreamEndEvent):
             return
         self.document.data = self.node(event, ())
-        while not isinstance(event, StreamEndEvent):
-            event = next(self.events)
-            if not isinstance(event, DocumentEndEvent | StreamEndEvent):
+        while not isinstance(event, events.StreamEndEvent):
+            event = next(self.stream)
+            if not isinstance(event, events.DocumentEndEvent | events.StreamEndEvent):
                 raise self.error("expected one document", event)
 
-    def node(self, event: Event, path: KeyPath) -> object:
+    def node(self, event: events.Event, path: KeyPath) -> object:
         self.document.lines.setdefault(path, _line(event))
         self.refuse_fancy(event)
         if len(path) > DEEPEST:
             raise self.error(f"nested more than {DEEPEST} deep", event)
-        if isinstance(event, MappingStartEvent):
+        if isinstance(event, events.MappingStartEvent):
             return self.mapping(path)
-        if isinstance(event, SequenceStartEvent):
+        if isinstance(event, events.SequenceStartEvent):
             return self.sequence(path)
-        if isinstance(event, ScalarEvent):
+        if isinstance(event, events.ScalarEvent):
             return _plain(event.value) if event.style is None else event.value
         raise self.error("expected a value", event)
 
     def mapping(self, path: KeyPath) -> dict[str, object]:
         data: dict[str, object] = {}
-        while not isinstance(event := next(self.events), MappingEndEvent):
+        while not isinstance(event := next(self.stream), events.MappingEndEvent):
             self.refuse_fancy(event)
-            if not isinstance(event, ScalarEvent):
+            if not isinstance(event, events.ScalarEvent):
                 raise self.error("expected a plain key", event)
             key = event.value
             here = (*path, key)
@@ -145,26 +131,28 @@ class _Reader:
                 first = self.document.lines[here]
                 raise self.error(f"duplicate key {key!r}, first on line {first}", event)
             self.document.lines[here] = _line(event)
-            data[key] = self.node(next(self.events), here)
+            data[key] = self.node(next(self.stream), here)
         return data
 
     def sequence(self, path: KeyPath) -> list[object]:
         data: list[object] = []
-        while not isinstance(event := next(self.events), SequenceEndEvent):
+        while not isinstance(event := next(self.stream), events.SequenceEndEvent):
             data.append(self.node(event, (*path, len(data))))
         return data
 
-    def refuse_fancy(self, event: Event) -> None:
-        if isinstance(event, AliasEvent) or (isinstance(event, NodeEvent) and event.anchor):
+    def refuse_fancy(self, event: events.Event) -> None:
+        if isinstance(event, events.AliasEvent) or (
+            isinstance(event, events.NodeEvent) and event.anchor
+        ):
             raise self.error("anchors and aliases (&name, *name) are not supported", event)
         if tag := getattr(event, "ctag", None):
             raise self.error(f"tags are not supported: {str(tag)!r}", event)
 
-    def error(self, problem: str, event: Event) -> ConfigError:
+    def error(self, problem: str, event: events.Event) -> ConfigError:
         return ConfigError(problem, where=self.document.where, line=_line(event))
 
 
-def _line(event: Event) -> int:
+def _line(event: events.Event) -> int:
     return int(event.start_mark.line) + 1
 
 

@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.strict import is_line
 from simmpp.common.units import shown
 
 POINTS = "points"
@@ -17,8 +18,8 @@ UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "chec
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""
-SAME = (("memory.fraction", "memory.bytes"),)
-"""Keys that say the same in two ways."""
+SAME = {"memory.fraction": "memory.bytes", "memory.bytes": "memory.fraction"}
+"""Keys that say the same in another way: setting one takes the other back."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,8 @@ def _refuse_twice(axes: Iterable[Axis]) -> None:
         for key in one:
             if key in other:
                 raise ConfigError(f"{key} is swept twice: expected one axis with it")
-        for a, b in SAME:
-            if (a in one and b in other) or (b in one and a in other):
-                raise ConfigError(f"expected {a} or {b}, got both")
+            if SAME.get(key) in other:
+                raise ConfigError(f"expected {' or '.join(SAME)}, got both")
 
 
 def keys_of(axis: Axis) -> list[str]:
@@ -112,7 +112,7 @@ def _row(label: str, keys: Sequence[str], value: object) -> Sequence[object]:
 def _named(values: Sequence[object]) -> Axis:
     axis: list[Choice] = []
     for value in values:
-        if not isinstance(value, dict) or not _is_name(value.get(NAME)):
+        if not isinstance(value, dict) or not is_line(value.get(NAME)):
             raise ConfigError(
                 f"{POINTS}: value {shown(value)}: expected a mapping with a name and the keys to "
                 "set, such as {name: small, processors: 8}"
@@ -124,7 +124,3 @@ def _named(values: Sequence[object]) -> Axis:
         if names.count(name) > 1:
             raise ConfigError(f"{POINTS}: two are called {name!r}: expected different names")
     return tuple(axis)
-
-
-def _is_name(value: object) -> bool:
-    return isinstance(value, str) and bool(value) and value.isprintable()

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pydantic_core import to_jsonable_python
+
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.common.strict import structure
@@ -66,6 +68,13 @@ class Config:
         return axes_of(self.settings.sweep)
 
     @property
+    def kept_source(self) -> Source:
+        """The source, of a configuration that keeps it."""
+        if self.source is None:
+            raise ValueError("expected a configuration that keeps its source")
+        return self.source
+
+    @property
     def places(self) -> Places:
         """Where each key was set, as far as that is known."""
         return self.source.places if self.source else {}
@@ -113,9 +122,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     if not isinstance(document.data, dict):
         raise ConfigError("expected keys with values, such as 'scene: mountain:5'", where=where)
     places: Places = {key: (where, line) for key, line in document.lines.items()}
-    for assignment in overrides:
-        override(document.data, assignment, places)
-    return _checked(document.data, places, Path(path).parent)
+    return _checked(document.data, places, Path(path).parent, overrides)
 
 
 def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] = ()) -> Config:
@@ -129,24 +136,24 @@ def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] 
         raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
     data = copy.deepcopy(dict(mapping))
     places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
-    for assignment in overrides:
-        override(data, assignment, places)
-    return _checked(data, places, Path())
+    return _checked(data, places, Path(), overrides)
 
 
 def with_key(config: Config, key: str, value: object) -> Config:
     """The same configuration and sweep, with one dotted key set."""
-    if config.source is None:
-        raise ValueError("expected a configuration that keeps its source")
-    data, places = copy.deepcopy(config.source.data), dict(config.source.places)
+    source = config.kept_source
+    data, places = copy.deepcopy(source.data), dict(source.places)
     set_key(data, key, value, places, ("", None))
-    return _checked(data, places, config.source.folder)
+    return _checked(data, places, source.folder)
 
 
-def _checked(data: dict[str, Any], places: Places, folder: Path) -> Config:
+def _checked(
+    data: dict[str, Any], places: Places, folder: Path, overrides: Sequence[str] = ()
+) -> Config:
     """The configuration, once it and all values that are swept are found right."""
-    settings = structure(Settings, data, places)
-    config = Config(settings, _scene_folder(places, folder), Source(data, places, folder))
+    for assignment in overrides:
+        override(data, assignment, places)
+    config = _structured(data, places, folder)
     axes = config.axes
     first = dict.fromkeys(axes, 0)
     point_at(config, axes, first)
@@ -166,7 +173,7 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
         for name, n in chosen.items()
         for key, value in axes[name][n].assignments.items()
     ]
-    point = changed(config, sorted(assignments, key=lambda each: each[0].count(".")))
+    point = changed(config, sorted(assignments, key=lambda assigned: assigned[0].count(".")))
     try:
         torus_shape(point.processors, point.settings.machine.shape)
     except ConfigError as error:
@@ -179,20 +186,22 @@ def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) 
 
     Each comes with the path of what set it in the configuration's file.
     """
-    if config.source is None:
-        raise ValueError("expected a configuration that keeps its source")
-    given, places, folder = config.source.data, config.source.places, config.source.folder
-    data = copy.deepcopy({key: value for key, value in given.items() if key != "sweep"})
-    own = {path: place for path, place in places.items() if path[:1] != ("sweep",)}
+    source = config.kept_source
+    data = copy.deepcopy({key: value for key, value in source.data.items() if key != "sweep"})
+    places = {path: place for path, place in source.places.items() if path[:1] != ("sweep",)}
     for key, value, path in assignments:
-        set_key(data, key, copy.deepcopy(value), own, _nearest(places, path))
-    settings = structure(Settings, data, own)
-    return Config(settings, _scene_folder(own, folder), Source(data, own, folder))
+        set_key(data, key, copy.deepcopy(value), places, _nearest(source.places, path))
+    return _structured(data, places, source.folder)
+
+
+def _structured(data: dict[str, Any], places: Places, folder: Path) -> Config:
+    settings = structure(Settings, data, places)
+    return Config(settings, _scene_folder(places, folder), Source(data, places, folder))
 
 
 def _nearest(places: Places, path: KeyPath) -> Place:
     known = (path[:n] for n in range(len(path), -1, -1))
-    return next((places[found] for found in known if found in places), ("", None))
+    return next((places[written] for written in known if written in places), ("", None))
 
 
 def _scene_folder(places: Places, folder: Path) -> Path:
@@ -203,13 +212,6 @@ def _scene_folder(places: Places, folder: Path) -> Path:
 
 def described(config: Config) -> dict[str, Any]:
     """The configuration with its defaults, as JSON can hold it and as a user could write it."""
-    plain: dict[str, Any] = _plain(config.settings.model_dump(exclude_none=True))
+    values = config.settings.model_dump(exclude_none=True)
+    plain: dict[str, Any] = to_jsonable_python(values, fallback=str, inf_nan_mode="constants")
     return plain
-
-
-def _plain(value: object) -> Any:
-    if isinstance(value, dict):
-        return {str(key): _plain(child) for key, child in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(child) for child in value]
-    return value if value is None or isinstance(value, bool | int | float | str) else str(value)

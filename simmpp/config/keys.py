@@ -20,6 +20,7 @@ from simmpp.common.units import shown
 from simmpp.config.overrides import key_path
 from simmpp.config.settings import Settings
 from simmpp.machine.constants import CopiesConstants
+from simmpp.machine.presets import DEFAULT_PRESET, load_preset
 
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
 HEADER = "| key | default | takes | unit | meaning |\n|---|---|---|---|---|\n"
@@ -65,8 +66,10 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
 
 
 def _default(name: str, expected: Expect, value: Any) -> str:
-    if value is None:  # the torus has as many PEs as there are processors: no preset has a shape
-        return "preset's" if name.startswith(MACHINE) and name != "machine.shape" else "none"
+    if value is None:
+        preset = load_preset(DEFAULT_PRESET)
+        text = name.startswith(MACHINE) and preset.text(name.removeprefix(MACHINE), expected.write)
+        return f"{text} ({DEFAULT_PRESET})" if text else "none"
     if isinstance(value, Fraction):
         return f"{float(value):.0%}"
     if isinstance(value, bool):

@@ -9,6 +9,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place, unknown
 from simmpp.common.strict import fields_of, inner_class
 from simmpp.common.yamlfile import parse_yaml
+from simmpp.config.axes import SAME
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test
 from simmpp.policy.registry import DEFAULT_POLICY
@@ -22,11 +23,6 @@ _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
     ("policy",): long_policies,
     ("machine", "test"): long_test,
 }
-_ALTERNATIVES: dict[tuple[str, ...], str] = {
-    ("memory", "bytes"): "fraction",
-    ("memory", "fraction"): "bytes",
-}
-"""Keys that say the same in another way: setting one takes the other back."""
 
 
 def override(data: dict[str, Any], assignment: str, places: Places) -> None:
@@ -50,7 +46,7 @@ def set_key(data: dict[str, Any], key: str, value: object, places: Places, place
         nodes = [child for node in nodes for child in _children(*node, part, path[:depth])]
     for within, node in nodes:
         node[path[-1]] = value
-        node.pop(_ALTERNATIVES.get(path, ""), None)
+        node.pop(SAME.get(key, "").rpartition(".")[2], None)
         _replace(places, (*within, path[-1]), place)
 
 
@@ -63,14 +59,10 @@ def _children(
     elif path in _LONG_FORMS:
         node[part] = _LONG_FORMS[path](node[part])
     here = (*within, part)
-    if isinstance(node[part], list):
-        yield from (((*here, n), each) for n, each in enumerate(node[part]) if _is_mapping(each))
-    elif _is_mapping(node[part]):
+    children = enumerate(node[part]) if isinstance(node[part], list) else ()
+    yield from (((*here, n), child) for n, child in children if isinstance(child, dict))
+    if isinstance(node[part], dict):
         yield here, node[part]
-
-
-def _is_mapping(value: object) -> bool:
-    return isinstance(value, dict)
 
 
 def _replace(places: Places, path: KeyPath, place: Place) -> None:

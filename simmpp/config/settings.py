@@ -24,9 +24,9 @@ from simmpp.common.strict import (
     one_of,
     parsed_by,
 )
-from simmpp.common.units import shown
+from simmpp.common.units import share, shown
 from simmpp.common.validate import MOST_SEED
-from simmpp.config import values
+from simmpp.config.axes import axes_of
 from simmpp.engine.simulate import DEFAULT_ENGINE, ENGINES, READY_ORDERS
 from simmpp.machine.constants import Constants
 from simmpp.machine.machine import MOST_PROCESSORS
@@ -38,16 +38,50 @@ from simmpp.policy.registry import POLICIES
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import SceneKey
 
+_AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
+_SEEDS = f"a list of different integers from 0 to {MOST_SEED}, such as [0, 1, 2]"
+_TOLERANCE = "none, or a share above 0% and below 100%, such as 2%"
 _SCENE = Short("a text such as mountain:5 or bunny.glb", {"type": "string"})
 _OPEN = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 _SHARE = {"anyOf": [{"enum": ["none", None]}, _OPEN, SHARE_TEXT]}
-Tolerance = Annotated[
-    Fraction | None,
-    parsed_by(values.tolerance),
-    Expect(values.TOLERANCE, _SHARE),
-]
 _SEED = {"type": "integer", "minimum": 0, "maximum": MOST_SEED}
-_SEEDS = {"type": "array", "items": _SEED, "minItems": 1, "uniqueItems": True}
+_SEEDS_SCHEMA = {"type": "array", "items": _SEED, "minItems": 1, "uniqueItems": True}
+
+
+def _seeds(value: object) -> tuple[int, ...]:
+    """Different seeds, at least one."""
+    if not isinstance(value, list | tuple):
+        raise ConfigError(f"value {shown(value)}: expected {_SEEDS}")
+    for seed in value:
+        if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= MOST_SEED:
+            raise ConfigError(f"value {shown(seed)} in the list: expected {_SEEDS}")
+    if not 0 < len(set(value)) == len(value):
+        raise ConfigError(f"value {shown(value)}: expected {_SEEDS}")
+    return tuple(value)
+
+
+def _tolerance(value: object) -> Fraction | None:
+    """A share between 0 and 1, or None."""
+    if value in ("none", None):
+        return None
+    try:
+        tolerance = share(value)
+    except ConfigError:
+        tolerance = Fraction(0)
+    if not 0 < tolerance < 1:
+        raise ConfigError(f"value {shown(value)}: expected {_TOLERANCE}")
+    return tolerance
+
+
+def _axes(value: object) -> object:
+    """Axes of a sweep; the keys themselves are checked later."""
+    if not isinstance(value, dict):
+        raise ConfigError(f"value {shown(value)}: expected {_AXES}")
+    axes_of(value)
+    return value
+
+
+Tolerance = Annotated[Fraction | None, parsed_by(_tolerance), Expect(_TOLERANCE, _SHARE)]
 
 
 class MachineSettings(Constants):
@@ -112,7 +146,7 @@ class Settings(Strict):
         PolicyParameters(),
     )
     """The dataflow policies that are compared: one, or a list; a name alone is short for it."""
-    seeds: Annotated[tuple[int, ...], parsed_by(values.seeds), Expect(values.SEEDS, _SEEDS)] = (0,)
+    seeds: Annotated[tuple[int, ...], parsed_by(_seeds), Expect(_SEEDS, _SEEDS_SCHEMA)] = (0,)
     """Seeds of the draws; `run` takes the first."""
     tolerance: Tolerance = None
     """`sweep` and `check` add seeds until the 95 % intervals of both profits are within this share
@@ -127,9 +161,7 @@ class Settings(Strict):
     `model`)."""
     engine: Annotated[str, *one_of(*ENGINES)] = DEFAULT_ENGINE
     """Event loop: compiled, or the readable one in SimPy."""
-    sweep: Annotated[dict[str, list[object]], parsed_by(values.axes), Expect(values.AXES)] = Field(
-        default={}
-    )
+    sweep: Annotated[dict[str, list[object]], parsed_by(_axes), Expect(_AXES)] = Field(default={})
     """Values of dotted keys, such as memory.fraction: [0.1, 0.5, 1]."""
     check: CheckSettings = CheckSettings()
     """Tolerances of `simmpp check` against its baseline."""

@@ -13,30 +13,28 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import Bandwidth, Size, Time
-from simmpp.common.strict import Expect, integer, parsed_by
+from simmpp.common.strict import Expect, integer, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
-from simmpp.common.units import shown
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 MOST_PROCESSORS = 65536
 """PEs of the largest torus of the presets: Blue Gene/L."""
 
 
-def _shape(value: object) -> tuple[int, ...]:
-    whole = isinstance(value, list | tuple) and all(
-        isinstance(n, int) and not isinstance(n, bool) and 1 <= n <= MOST_PROCESSORS for n in value
+def _is_shape(value: object) -> bool:
+    return (
+        isinstance(value, list | tuple)
+        and len(value) == 3
+        and all(isinstance(n, int) and not isinstance(n, bool) for n in value)
+        and all(1 <= n <= MOST_PROCESSORS for n in value)
     )
-    if not whole or not isinstance(value, list | tuple) or len(value) != 3:
-        raise ConfigError(f"value {shown(value)}: expected {_SHAPE}")
-    return tuple(value)
 
 
 _SHAPE = "three positive integers, such as [4, 4, 4]"
 _SIDES = {"type": "integer", "minimum": 1, "maximum": MOST_PROCESSORS}
 _THREE = {"type": "array", "items": _SIDES, "minItems": 3, "maxItems": 3}
-Shape = Annotated[tuple[int, int, int], parsed_by(_shape), Expect(_SHAPE, _THREE, "PEs")]
+Shape = Annotated[tuple[int, int, int], *only(_is_shape, Expect(_SHAPE, _THREE, "PEs"))]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
@@ -15,14 +15,12 @@ from simmpp.common.units import shown
 from simmpp.common.validate import require_whole
 from simmpp.common.yamlfile import Document, read_yaml
 from simmpp.machine.constants import Constants, machine_of
-from simmpp.machine.machine import MOST_PROCESSORS, Machine
+from simmpp.machine.machine import MOST_PROCESSORS, Machine, Shape
 from simmpp.machine.torus import default_shape
 
 _FOLDER = files("simmpp") / "machine" / "presets"
 OVERRIDDEN = "set by the user"
 DEFAULT_PRESET = "t3e"
-
-Shape = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -37,6 +35,11 @@ class Preset:
     sources: dict[str, str]
     """A citation for each constant, or ESTIMATE and the range; by the same keys."""
 
+    def text(self, key: str, write: Callable[[int], str]) -> str:
+        """A constant with its unit, written by ``write`` where the file has it for all messages."""
+        numbers = self.constants.flat()
+        return self.texts.get(key) or (write(numbers[key]) if key in numbers else "")
+
     def source(self, key: str) -> str:
         """Of a constant: ``pack.fixed`` in the file says what ``pack.rays.fixed`` is, too."""
         first, _, last = key.partition(".")
@@ -46,8 +49,8 @@ class Preset:
 
 def preset_names() -> list[str]:
     """Names that ``load_preset`` knows."""
-    found = (entry.name for entry in _FOLDER.iterdir())
-    return sorted(name.removesuffix(".yaml") for name in found if name.endswith(".yaml"))
+    names = (entry.name for entry in _FOLDER.iterdir())
+    return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
 @cache

@@ -56,8 +56,6 @@ RayMessages = Literal["to-all", "with-rays", "after-runs"]
 without rays (``to-all``). Real machines need not: only messages that carry a ray (``with-rays``),
 for m rays to uniform destinations (nb - 1)(1 - (1 - 1/(nb - 1))^m); or these, and a PE sends only
 when all its rays lack an object, after a run of 1 / (1 - x) tests in the mean (``after-runs``)."""
-RAY_MESSAGES: tuple[RayMessages, ...] = ("to-all", "with-rays", "after-runs")
-
 
 ROUNDING = 1e-9
 """Times that differ by less are equal but for the rounding of sums."""
@@ -152,7 +150,7 @@ def analytical(
     for row, nb in enumerate(processors):
         # Without imbalance all PEs are alike, and one stands for all.
         width, seeds = (nb, range(seed, seed + draws)) if imbalance else (1, range(1))
-        zetas = [imbalances(len(rays.tests), width, imbalance, each) for each in seeds]
+        zetas = [imbalances(len(rays.tests), width, imbalance, draw) for draw in seeds]
         held = np.maximum(shares, 1.0 / nb)
         times = [_one_machine(costs, nb, held, rays, zeta, ray_messages) for zeta in zetas]
         both[:, row] = np.mean(times, axis=0)
@@ -165,15 +163,15 @@ def _one_machine(
     """TO and TC of one nb: each (X,)."""
     object_time, ray_time = np.zeros(len(x)), np.zeros(len(x))
     share = np.ones((len(x), len(zeta[0]) if len(zeta) else 1))
-    each = ((1.0 - x) / max(nb - 1, 1))[:, np.newaxis]
+    chance = ((1.0 - x) / max(nb - 1, 1))[:, np.newaxis]
     for tests, ended, repeats, z in zip(
         rays.tests / nb, rays.ended / nb, rays.repeats, zeta, strict=True
     ):
         even = np.full_like(share, tests)
-        asked, served = _missing(even, each, z, nb)
+        asked, served = _missing(even, chance, z, nb)
         object_time += repeats * _slowest(object_dataflow_ps(costs, even, ended, asked, served))
         held = share * tests
-        sent, received = _missing(held, each, z, nb)
+        sent, received = _missing(held, chance, z, nb)
         tested = held - sent + received
         share = tested / tests if tests > 0 else share
         messages = _messages(held, sent, x, nb, ray_messages)
@@ -189,14 +187,14 @@ def _slowest(times: Floats) -> Floats:
     return makespan(times[np.newaxis])
 
 
-def _missing(n: Floats, each: Floats, z: Floats, nb: int) -> tuple[Floats, Floats]:
+def _missing(n: Floats, chance: Floats, z: Floats, nb: int) -> tuple[Floats, Floats]:
     """Sums of r(i, j, k) over j != i and of r(j, i, k) over j != i, by equation (1): (X, W) each.
 
-    ``each`` is (1 - x) / (nb - 1), (X, 1). The z of a step have the sum 0, so those of all others
+    ``chance`` is (1 - x) / (nb - 1), (X, 1). The z of a step have the sum 0, so those of all others
     have the sum -z(i).
     """
-    lacking = each * n * (nb - 1 - z)
-    wanted = each * (1.0 + z) * (nb * n.mean(axis=1, keepdims=True) - n)
+    lacking = chance * n * (nb - 1 - z)
+    wanted = chance * (1.0 + z) * (nb * n.mean(axis=1, keepdims=True) - n)
     return lacking, wanted
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import RAYS
+from simmpp.machine.transfer import transfer_ps
 from simmpp.model.costs import Costs, costs_of
 from simmpp.model.formulas import makespan, object_dataflow_ps, ray_dataflow_ps
 from simmpp.model.synchronous import Counts, Dataflow, synchronous
@@ -76,10 +77,7 @@ def _packing_ps(counts: Counts, machine: Machine) -> Ints:
 
 
 def _transfer_ps(cost: CopyCost, n_bytes: Ints) -> Ints:
-    """bytes * 10^12 / bandwidth for each message, halves rounded up."""
-    if cost.bytes_per_s == 0:
-        return np.zeros_like(n_bytes)
+    """The time of each message's bytes, each size worked out once."""
     sizes, which = np.unique(n_bytes, return_inverse=True)
-    doubled = [2 * size * 10**12 + cost.bytes_per_s for size in sizes.tolist()]
-    times = np.array([double // (2 * cost.bytes_per_s) for double in doubled], np.int64)
-    return times[which]
+    times = [transfer_ps(size, cost.bytes_per_s) for size in sizes.tolist()]
+    return np.array(times, np.int64)[which]

@@ -64,23 +64,26 @@ def synchronous(
     """
     _check_processors(machine.processors)
     _check_clock(workload, machine, dataflow)
-    world = _world(workload, machine, placement, waits)
-    nb = machine.processors
-    at = workload.itinerary_offsets[:-1].copy()
-    pe_of = np.zeros(workload.n_rays, np.int32)
-    pe_of[: workload.n_primaries] = placement.pixel_pes
+    world, nb = _world(workload, machine, placement, waits), machine.processors
     alive = np.arange(workload.n_primaries, dtype=np.int32)
     step_of = object_step if dataflow == "object" else ray_step
-    counter = Counter(nb)
-    times: list[NDArray[np.int64]] = []
+    per_pe = [np.zeros((3, 0, nb), np.int64)]
+    lacking = [np.zeros((4, 0), np.int64)]
     while len(alive):
         step = new_step(nb)
-        missing = needs(world, step, alive, at, pe_of)
-        step_of(world, step, alive, missing, at, pe_of)
-        alive = next_rays(world, alive, at, pe_of)
-        counter.add(step.tests, step.ended, step.r)
-        times.append(step.clocks)
-    return SynchronousResult(np.array(times, np.int64).reshape(-1, nb), counter.counts())
+        step_of(world, step, alive, needs(world, step, alive))
+        alive = next_rays(world, alive)
+        lacking.append(_entries(step.r, len(lacking) - 1))
+        per_pe.append(np.array([[step.clocks], [step.tests], [step.ended]]))
+    times_ps, tests, ended = np.concatenate(per_pe, axis=1)
+    counts = Counts(tests, ended, *np.concatenate(lacking, axis=1))
+    return SynchronousResult(times_ps, counts)
+
+
+def _entries(r: NDArray[np.int64], k: int) -> NDArray[np.int64]:
+    """What ``Counts`` keeps of the r of step k: steps, holders, owners, rays, (4, entries)."""
+    holders, owners = np.nonzero(r)
+    return np.array([np.full(len(holders), k), holders, owners, r[holders, owners]], np.int64)
 
 
 def _check_processors(nb: int) -> None:
@@ -117,6 +120,8 @@ def _world(workload: Workload, machine: Machine, placement: Placement, waits: bo
     def copies(costs: Any) -> NDArray[np.int64]:
         return np.array([(cost.fixed_ps, cost.bytes_per_s) for cost in costs], np.int64)
 
+    pe_of = np.zeros(workload.n_rays, np.int32)
+    pe_of[: workload.n_primaries] = placement.pixel_pes
     return World(
         workload.itinerary_offsets,
         workload.itinerary_objects,
@@ -133,6 +138,8 @@ def _world(workload: Workload, machine: Machine, placement: Placement, waits: bo
         machine.request_bytes,
         machine.ray_bytes,
         waits,
+        workload.itinerary_offsets[:-1].copy(),
+        pe_of,
     )
 
 
@@ -180,31 +187,3 @@ class Counts:
         total = np.zeros_like(self.tests)
         np.add.at(total, (self.steps, pes), self.rays)
         return total
-
-
-class Counter:
-    """Collects counts step by step."""
-
-    def __init__(self, processors: int) -> None:
-        self._processors = processors
-        self._tests: list[NDArray[np.int64]] = []
-        self._ended: list[NDArray[np.int64]] = []
-        self._entries: list[NDArray[np.int64]] = []
-
-    def add(self, tests: NDArray[np.int64], ended: NDArray[np.int64], r: NDArray[np.int64]) -> None:
-        """Note one step; ``r`` is (nb, nb)."""
-        holders, owners = np.nonzero(r)
-        steps = np.full(len(holders), len(self._tests))
-        self._entries.append(np.array([steps, holders, owners, r[holders, owners]], np.int64))
-        self._tests.append(tests)
-        self._ended.append(ended)
-
-    def counts(self) -> Counts:
-        """All steps so far."""
-        entries = np.concatenate([np.zeros((4, 0), np.int64), *self._entries], axis=1)
-        shape = (-1, self._processors)
-        return Counts(
-            np.array(self._tests, np.int64).reshape(shape),
-            np.array(self._ended, np.int64).reshape(shape),
-            *entries,
-        )

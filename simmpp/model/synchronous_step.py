@@ -16,7 +16,7 @@ Rays = NDArray[np.int32]
 
 
 class World(NamedTuple):
-    """What does not change in a run."""
+    """What is given in a run, and where each of the n rays is by now."""
 
     itinerary_offsets: NDArray[np.int64]
     itinerary_objects: Rays
@@ -35,6 +35,10 @@ class World(NamedTuple):
     request_bytes: int
     ray_bytes: int
     waits: bool
+    at: NDArray[np.int64]
+    """(n,): the ray's next test, as an index of ``itinerary_objects``."""
+    pe_of: Rays
+    """(n,): the PE that the ray is on."""
 
 
 class Step(NamedTuple):
@@ -54,15 +58,13 @@ def new_step(nb: int) -> Step:
 
 
 @njit
-def needs(
-    world: World, step: Step, alive: Rays, at: NDArray[np.int64], pe_of: Rays
-) -> NDArray[np.bool_]:
+def needs(world: World, step: Step, alive: Rays) -> NDArray[np.bool_]:
     """Count r; whether the object of each ray alive is missing: (alive,) bool."""
     missing = np.zeros(alive.size, np.bool_)
     for n in range(alive.size):
         ray = alive[n]
-        if at[ray] < world.itinerary_offsets[ray + 1]:
-            wanted, here = world.itinerary_objects[at[ray]], pe_of[ray]
+        if world.at[ray] < world.itinerary_offsets[ray + 1]:
+            wanted, here = world.itinerary_objects[world.at[ray]], world.pe_of[ray]
             if not world.resident[here, wanted]:
                 missing[n] = True
                 step.r[here, world.owners[wanted]] += 1
@@ -70,47 +72,33 @@ def needs(
 
 
 @njit
-def object_step(
-    world: World,
-    step: Step,
-    alive: Rays,
-    missing: NDArray[np.bool_],
-    at: NDArray[np.int64],
-    pe_of: Rays,
-) -> None:
+def object_step(world: World, step: Step, alive: Rays, missing: NDArray[np.bool_]) -> None:
     """Ask for every missing object, serve what others ask for, test."""
     clocks = step.clocks
     asking = alive[missing]
     departs = np.zeros(asking.size, np.int64)
     for n in range(asking.size):
-        me = pe_of[asking[n]]
+        me = world.pe_of[asking[n]]
         clocks[me] += world.send_ps + _copy_ps(world.pack, REQUEST, world.request_bytes)
         departs[n] = clocks[me]
     for n in np.argsort(departs, kind="mergesort"):
-        wanted = world.itinerary_objects[at[asking[n]]]
+        wanted = world.itinerary_objects[world.at[asking[n]]]
         me, size = world.owners[wanted], world.object_bytes[wanted]
         _arrive(world, clocks, me, departs[n])
         clocks[me] += world.receive_ps + _copy_ps(world.unpack, REQUEST, world.request_bytes)
         clocks[me] += world.send_ps + _copy_ps(world.pack, OBJECT, size)
         departs[n] = clocks[me]
-    _test_all(world, step, alive[~missing], at, pe_of)
+    _test_all(world, step, alive[~missing])
     for n in np.argsort(departs, kind="mergesort"):
-        me, wanted = pe_of[asking[n]], world.itinerary_objects[at[asking[n]]]
+        me, wanted = world.pe_of[asking[n]], world.itinerary_objects[world.at[asking[n]]]
         _arrive(world, clocks, me, departs[n])
         size = world.object_bytes[wanted]
         clocks[me] += world.receive_ps + _copy_ps(world.unpack, OBJECT, size)
-        _test_all(world, step, asking[n : n + 1], at, pe_of)
+        _test_all(world, step, asking[n : n + 1])
 
 
 @njit
-def ray_step(
-    world: World,
-    step: Step,
-    alive: Rays,
-    missing: NDArray[np.bool_],
-    at: NDArray[np.int64],
-    pe_of: Rays,
-) -> None:
+def ray_step(world: World, step: Step, alive: Rays, missing: NDArray[np.bool_]) -> None:
     """Send one message to every other PE, receive one from each, test the rays that are here."""
     clocks, nb = step.clocks, step.clocks.size
     departs = np.zeros((nb, nb), np.int64)
@@ -120,7 +108,7 @@ def ray_step(
             size = step.r[me, to] * world.ray_bytes
             clocks[me] += world.send_ps + _copy_ps(world.pack, RAYS, size)
             departs[me, to] = clocks[me]
-    _test_all(world, step, alive[~missing], at, pe_of)
+    _test_all(world, step, alive[~missing])
     for me in range(nb):
         for away in range(1, nb):
             source = (me - away) % nb
@@ -129,8 +117,8 @@ def ray_step(
             clocks[me] += world.receive_ps + _copy_ps(world.unpack, RAYS, size)
     moving = alive[missing]
     for ray in moving:
-        pe_of[ray] = world.owners[world.itinerary_objects[at[ray]]]
-    _test_all(world, step, moving, at, pe_of)
+        world.pe_of[ray] = world.owners[world.itinerary_objects[world.at[ray]]]
+    _test_all(world, step, moving)
 
 
 @kernel
@@ -146,36 +134,36 @@ def _copy_ps(costs: NDArray[np.int64], kind: int, n_bytes: int) -> int:
 
 
 @kernel
-def _test_all(world: World, step: Step, rays: Rays, at: NDArray[np.int64], pe_of: Rays) -> None:
+def _test_all(world: World, step: Step, rays: Rays) -> None:
     """One test of each of these rays, where they are; a ray without itinerary has none."""
     for ray in rays:
-        me = pe_of[ray]
+        me = world.pe_of[ray]
         end = world.itinerary_offsets[ray + 1]
-        if at[ray] < end:
-            step.clocks[me] += world.test_ps[world.itinerary_objects[at[ray]]]
+        if world.at[ray] < end:
+            step.clocks[me] += world.test_ps[world.itinerary_objects[world.at[ray]]]
             step.tests[me] += 1
-            at[ray] += 1
-        if at[ray] == end:
+            world.at[ray] += 1
+        if world.at[ray] == end:
             step.clocks[me] += world.ray_ps
             step.ended[me] += 1
 
 
 @njit
-def next_rays(world: World, alive: Rays, at: NDArray[np.int64], pe_of: Rays) -> Rays:
+def next_rays(world: World, alive: Rays) -> Rays:
     """Rays that go on, and the children of those that ended, on the PE where they ended."""
     n = 0
     for ray in alive:
-        ended = at[ray] == world.itinerary_offsets[ray + 1]
+        ended = world.at[ray] == world.itinerary_offsets[ray + 1]
         n += world.child_offsets[ray + 1] - world.child_offsets[ray] if ended else 1
     following = np.empty(n, np.int32)
     n = 0
     for ray in alive:
-        if at[ray] < world.itinerary_offsets[ray + 1]:
+        if world.at[ray] < world.itinerary_offsets[ray + 1]:
             following[n] = ray
             n += 1
             continue
         for child in range(world.child_offsets[ray], world.child_offsets[ray + 1]):
-            pe_of[child] = pe_of[ray]
+            world.pe_of[child] = world.pe_of[ray]
             following[n] = child
             n += 1
     return following

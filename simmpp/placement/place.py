@@ -12,7 +12,7 @@ from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_whole
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.residents import Ids, replicas, resident_count
+from simmpp.placement.residents import Ids, as_csr, replicas, resident_count
 from simmpp.workload.workload import Workload
 
 
@@ -68,13 +68,10 @@ def rotated(
     starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]
     held = [_turns(_circle(owner_of, pe, seed), owner_of, counts) for pe in range(processors)]
-    placements = []
-    for number in range(len(fractions)):
-        parts = [turns[number] for turns in held]
-        offsets = np.concatenate([[0], np.cumsum([len(ids) for ids in parts])]).astype(np.int64)
-        objects = np.concatenate(parts, dtype=np.int32)
-        placements.append(Placement(processors, owner_of, offsets, objects, 0, starts_on))
-    return placements
+    return [
+        Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on)
+        for of_fraction in zip(*held, strict=True)
+    ]
 
 
 def _circle(owner_of: Ids, pe: int, seed: int) -> Ids:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -40,6 +40,11 @@ def replicas(
         else:
             room_bytes = memory.bytes - int(own_bytes[pe])
             held.append(_fitting(workload.object_bytes, ranking(pe), room_bytes))
+    return as_csr(held)
+
+
+def as_csr(held: Sequence[Ids]) -> tuple[NDArray[np.int64], Ids]:
+    """What each PE holds, one after the other: offsets (nb + 1,) int64 and object ids int32."""
     offsets = np.concatenate([[0], np.cumsum([len(ids) for ids in held])]).astype(np.int64)
     return offsets, np.concatenate(held, dtype=np.int32)
 

@@ -10,7 +10,17 @@ from pydantic.json_schema import SkipJsonSchema
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import TIME, Time
-from simmpp.common.strict import Expect, Short, Switch, Text, declared, in_words, integer, parsed_by
+from simmpp.common.strict import (
+    Expect,
+    Short,
+    Switch,
+    Text,
+    declared,
+    in_words,
+    integer,
+    one_of,
+    parsed_by,
+)
 from simmpp.common.units import picoseconds, share, shown
 from simmpp.common.validate import MOST_COUNT, whole
 from simmpp.policy.registry import DEFAULT_POLICY, POLICIES
@@ -19,12 +29,6 @@ LoadInfo = Literal["piggyback", "exact", "none"]
 
 _LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
 _MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
-
-
-def _name(value: object) -> str:
-    if not isinstance(value, str) or value not in POLICIES:
-        raise ConfigError(f"value {shown(value)}: expected {in_words(tuple(POLICIES))}")
-    return value
 
 
 def _min_load(value: object) -> Fraction | int:
@@ -63,8 +67,7 @@ def _word(value: object) -> object:
     return value
 
 
-_NAME_SCHEMA = {"enum": list(POLICIES)}
-NAME = Short(in_words(tuple(POLICIES)), _NAME_SCHEMA)
+NAME = Short(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
 """A policy's name alone is short for it."""
 _RAYS = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
 _MIN_LOAD_SCHEMA = {"anyOf": [_RAYS, {"type": "string", "pattern": "[%/]"}]}
@@ -81,9 +84,7 @@ RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
 class PolicyParameters:
     """One policy of a run. A rule that a policy does not have ignores its parameters."""
 
-    name: Annotated[str, parsed_by(_name), Expect(in_words(tuple(POLICIES)), _NAME_SCHEMA)] = (
-        DEFAULT_POLICY
-    )
+    name: Annotated[str, *one_of(*POLICIES)] = DEFAULT_POLICY
     """The dataflow."""
     label: Text | None = None
     """Name in tables and rows; the policy's name when not given."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from simmpp.common.places import misplaced
 from simmpp.config.config import Config
@@ -83,7 +84,7 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
     if REFERENCE not in names:
         return [(PolicyParameters(REFERENCE), False), *chosen]
-    return sorted(chosen, key=lambda each: each[0].name != REFERENCE)
+    return sorted(chosen, key=lambda pair: pair[0].name != REFERENCE)
 
 
 def run_point(
@@ -98,42 +99,27 @@ def run_point(
     ``log_of`` gives what gets the event log of a policy's run, if anything. ``progress(title, rays
     left)`` is called now and then.
     """
-    for parameters, named in policies_of(point.config):
-        recording = replace(record, log=log_of(parameters) or False)
-        yield _run(point, parameters, named, recording, progress)
-
-
-def _run(
-    point: Point,
-    parameters: PolicyParameters,
-    named: bool,
-    recording: Recording,
-    progress: Callable[[str, int], None] | None,
-) -> PolicyRun:
-    def report(rays_left: int) -> None:
-        if progress is not None:
-            progress(parameters.title, rays_left)
-
     settings = point.config.settings
-    began_s = time.perf_counter()
-    result = simulate(
-        point.workload,
-        point.machine,
-        point.placement,
-        parameters,
-        engine=settings.engine,
-        ready_order=settings.ready_order,
-        record=recording,
-        progress=report,
-    )
-    return PolicyRun(parameters, result, named, time.perf_counter() - began_s)
+    for parameters, named in policies_of(point.config):
+        began_s = time.perf_counter()
+        result = simulate(
+            point.workload,
+            point.machine,
+            point.placement,
+            parameters,
+            engine=settings.engine,
+            ready_order=settings.ready_order,
+            record=replace(record, log=log_of(parameters) or False),
+            progress=progress and partial(progress, parameters.title),
+        )
+        yield PolicyRun(parameters, result, named, time.perf_counter() - began_s)
 
 
-def reference_of(runs: list[PolicyRun]) -> PolicyRun:
+def reference_of(runs: Sequence[PolicyRun]) -> PolicyRun:
     """The run that profits are measured against."""
     return next(run for run in runs if run.parameters.name == REFERENCE)
 
 
-def ceiling_of(runs: list[PolicyRun]) -> PolicyRun | None:
+def ceiling_of(runs: Sequence[PolicyRun]) -> PolicyRun | None:
     """The run with the whole scene in every memory, if it is finished."""
     return next((run for run in runs if run.all_resident), None)

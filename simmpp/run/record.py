@@ -71,13 +71,13 @@ def record_of_run(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
         },
         "effective_fraction": point.placement.effective_fraction,
         "bound_ps": point.bound_ps,
-        "policies": [_policy(point, run, list(runs)) for run in runs],
+        "policies": [_policy(point, run, runs) for run in runs],
     }
     workloads = {workload.name: [workload.digest]}
     return record(point.config, workloads, [point.machine], len(runs), further)
 
 
-def _policy(point: Point, run: PolicyRun, runs: list[PolicyRun]) -> dict[str, Any]:
+def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str, Any]:
     result, base, ceiling = run.result, reference_of(runs).result, ceiling_of(runs)
     parameters = asdict(run.parameters)
     parameters["min_load"] = str(parameters["min_load"])

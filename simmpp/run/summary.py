@@ -24,7 +24,7 @@ def summary(point: Point, runs: Sequence[PolicyRun]) -> Group:
     table.add_column("", no_wrap=True)
     for run in runs:
         table.add_column(run.parameters.title, justify="right", no_wrap=True)
-    for label, cell in _lines(list(runs)):
+    for label, cell in _lines(runs):
         table.add_row(label, *map(cell, runs))
     return Group(Text(heading(point)), Text(), table, Text(), Text("\n".join(_notes(point, runs))))
 
@@ -49,7 +49,7 @@ def heading(point: Point) -> str:
     )
 
 
-def _lines(runs: list[PolicyRun]) -> list[tuple[str, Cell]]:
+def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
     base, ceiling = reference_of(runs).result, ceiling_of(runs)
     lines: list[tuple[str, Cell]] = [
         ("makespan", lambda run: format_ps(run.result.makespan_ps)),

@@ -6,11 +6,8 @@ import math
 from collections.abc import Sequence
 from statistics import fmean
 
-CONFIDENCE = 0.95
-"""What an interval from low to high promises."""
 
-
-def interval(values: Sequence[float], confidence: float = CONFIDENCE) -> tuple[float, float] | None:
+def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, float] | None:
     """The confidence interval of the mean of independent draws; None if they can't tell."""
     n, mean = len(values), fmean(values)
     if n < 2 or not math.isfinite(mean):
@@ -24,12 +21,9 @@ def half_width(values: Sequence[float], confidence: float) -> float:
     n, mean = len(values), fmean(values)
     if min(values) == max(values):
         return 0.0
-    deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1))
-    return quantile(n - 1, confidence) * deviation / math.sqrt(n)
-
-
-def quantile(freedom: int, confidence: float) -> float:
-    """Student's t that is exceeded on either side with probability (1 - confidence) / 2."""
     from scipy.special import stdtrit  # takes half a second
 
-    return float(stdtrit(freedom, (1 + confidence) / 2))
+    deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1))
+    # Student's t that is exceeded on either side with probability (1 - confidence) / 2
+    quantile = float(stdtrit(n - 1, (1 + confidence) / 2))
+    return quantile * deviation / math.sqrt(n)

@@ -136,23 +136,23 @@ class Journal(Results):
         if not lines:
             self._append(identity)
             return
-        self._compare(self._parsed(lines[0], 1), identity)
-        for number, line in enumerate(lines[1:], 2):
-            self._take(self._parsed(line, number), number)
+        for number, line in enumerate(lines, 1):
+            try:
+                entry = json.loads(line)
+                if not isinstance(entry, dict):
+                    raise TypeError
+                if number == 1:
+                    self._compare(entry, identity)
+                else:
+                    self._take(entry)
+            except (TypeError, ValueError, KeyError):
+                problem = "damaged: expected a line of JSON; delete the file to begin anew"
+                raise ConfigError(problem, where=str(self.path), line=number) from None
 
     def _drop(self, line: bytes) -> None:
         self.notices.append(f"{self.path}: the last line was torn and is dropped")
         self._file.truncate(self._file.tell() - len(line))
         self._file.seek(0, os.SEEK_END)
-
-    def _parsed(self, line: bytes, number: int) -> dict[str, Any]:
-        try:
-            entry = json.loads(line)
-        except ValueError:
-            entry = None
-        if not isinstance(entry, dict):
-            raise self._damaged(number)
-        return entry
 
     def _compare(self, recorded: Mapping[str, Any], identity: Mapping[str, Any]) -> None:
         if problem := difference(recorded, json.loads(json.dumps(identity))):
@@ -162,19 +162,9 @@ class Journal(Results):
                 where=str(self.path.parent),
             )
 
-    def _take(self, entry: dict[str, Any], number: int) -> None:
-        try:
-            if "traced" in entry:
-                self.trace_s[str(entry["traced"])] = float(entry["trace_s"])
-            else:
-                outcome = Outcome(**entry)
-                self.outcomes[outcome.key] = outcome
-        except (TypeError, ValueError, KeyError):
-            raise self._damaged(number) from None
-
-    def _damaged(self, number: int) -> ConfigError:
-        return ConfigError(
-            "damaged: expected a line of JSON; delete the file to begin anew",
-            where=str(self.path),
-            line=number,
-        )
+    def _take(self, entry: dict[str, Any]) -> None:
+        if "traced" in entry:
+            self.trace_s[str(entry["traced"])] = float(entry["trace_s"])
+        else:
+            outcome = Outcome(**entry)
+            self.outcomes[outcome.key] = outcome

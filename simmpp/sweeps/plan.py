@@ -7,7 +7,7 @@ that a method does not know, a key that someone set and that the sweep sets othe
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,16 +58,11 @@ class Plan:
     def tasks(self) -> list[Task]:
         """What is to be simulated, once each; neighbours share a workload and a placement."""
         tasks = {planned.task.key: planned.task for planned in self.points}
-        workloads: dict[str, dict[str, list[Task]]] = {}
-        for task in tasks.values():
-            placements = workloads.setdefault(task.digest, {})
-            placements.setdefault(task.placement_key, []).append(task)
-        return [
-            task
-            for placements in workloads.values()
-            for sharing in placements.values()
-            for task in sharing
-        ]
+        first: dict[str, int] = {}
+        for n, task in enumerate(tasks.values()):
+            first.setdefault(task.digest, n)
+            first.setdefault(task.placement_key, n)
+        return sorted(tasks.values(), key=lambda t: (first[t.digest], first[t.placement_key]))
 
     @property
     def identity(self) -> dict[str, Any]:
@@ -97,20 +92,21 @@ class Plan:
 
     def rows(self, outcomes: Mapping[str, Outcome]) -> list[Row]:
         """Rows of the points that are finished, sorted by their keys."""
-        done = (planned for planned in self.points if planned.task.key in outcomes)
-        return in_order((_row(p, outcomes[p.task.key]) for p in done), self.further)
+        return in_order((_row(*finished) for finished in self._finished(outcomes)), self.further)
 
     def timings(self, outcomes: Mapping[str, Outcome], trace_s: Mapping[str, float]) -> list[Row]:
         """Seconds that each of these rows took; tracing is empty where the rays were cached."""
-        times: list[Row] = []
-        for planned in self.points:
-            if (outcome := outcomes.get(planned.task.key)) is not None:
-                seconds = {
-                    "trace_s": trace_s.get(planned.task.digest, ""),
-                    "wall_s": outcome.wall_s,
-                }
-                times.append(_row(planned, outcome) | seconds)
+        times = (
+            _row(planned, outcome)
+            | {"trace_s": trace_s.get(planned.task.digest, ""), "wall_s": outcome.wall_s}
+            for planned, outcome in self._finished(outcomes)
+        )
         return in_order(times, self.further)
+
+    def _finished(self, outcomes: Mapping[str, Outcome]) -> Iterator[tuple[PlannedPoint, Outcome]]:
+        for planned in self.points:
+            if planned.task.key in outcomes:
+                yield planned, outcomes[planned.task.key]
 
     @property
     def timing_columns(self) -> tuple[str, ...]:
@@ -189,12 +185,11 @@ def refuse_overruled(config: Config) -> None:
         return
     swept = _swept_everywhere(config)
     _refuse_set(config.source, swept)
-    for pair in SAME:
-        for key, other in (pair, pair[::-1]):
-            path = tuple(key.split("."))
-            if other in swept and _given(config.source.data, path):
-                problem = f"expected none: {other} is swept, and says the same in another way"
-                raise misplaced(path, problem, config.places)
+    for key, other in SAME.items():
+        path = tuple(key.split("."))
+        if other in swept and _given(config.source.data, path):
+            problem = f"expected none: {other} is swept, and says the same in another way"
+            raise misplaced(path, problem, config.places)
 
 
 def _swept_everywhere(config: Config) -> list[str]:

@@ -48,24 +48,15 @@ class RowIndex:
     ) -> None:
         self.numbers = numbers or {}
         self._places = by_place(rows, PLACE)
-
-    @property
-    def scenes(self) -> list[str]:
+        axes: list[list[Any]] = [
+            sorted({place[axis] for place in self._places}) for axis in range(len(PLACE))
+        ]
+        self.scenes: list[str] = axes[0]
         """Names of the scenes."""
-        return self._values(0)
-
-    @property
-    def processors(self) -> list[int]:
+        self.processors: list[int] = axes[1]
         """Numbers of PEs."""
-        return self._values(1)
-
-    @property
-    def fractions(self) -> list[float]:
+        self.fractions: list[float] = axes[2]
         """X: the fractions x, rising."""
-        return self._values(2)
-
-    def _values(self, axis: int) -> list[Any]:
-        return sorted({place[axis] for place in self._places})
 
     @property
     def seeds(self) -> int:

@@ -31,7 +31,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 
 from simmpp.common.validate import MOST_SEED
-from simmpp.sweeps.intervals import half_width
+from simmpp.sweeps.intervals import half_width, interval
 
 if TYPE_CHECKING:
     from simmpp.config.settings import Settings
@@ -91,10 +91,10 @@ def corrected_interval(
     values: Sequence[float], tolerance: Fraction, is_drawn: bool
 ) -> tuple[float, float] | None:
     """The interval of a profit whose number of seeds was chosen by its values."""
-    mean = fmean(values)
-    if not math.isfinite(mean) or len(values) < 2:
-        return None
-    half = half_width(values, CORRECTED)
-    if half == 0 and is_drawn:  # equal by luck: an interval of no width would be a lie
+    bounds = interval(values, CORRECTED)
+    if bounds and is_drawn and min(values) == max(values):
+        # equal by luck: an interval of no width would be a lie
+        mean = fmean(values)
         half = float(tolerance) * mean
-    return mean - half, mean + half
+        return mean - half, mean + half
+    return bounds

@@ -46,7 +46,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     rules = config.placement_rules
     if everywhere:
         rules = PlacementRules(pixels=rules.pixels)
-    memory = replace(Memory(), fraction=Fraction(1)) if everywhere else _canonical(config.memory)
+    memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
     is_drawn = METHODS[settings.method].is_placed and draws(memory, rules)
     seed = point.seed if is_drawn else 0
     machine = asdict(replace(config.machine_for(config.processors), sources={}))
@@ -82,10 +82,6 @@ def _holds_everything(config: Config) -> bool:
     """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
     full = config.memory.bytes is None and config.memory.fraction >= 1
     return full or config.processors == 1
-
-
-def _canonical(memory: Memory) -> Memory:
-    return memory if memory.bytes is None else replace(memory, fraction=Memory().fraction)
 
 
 def _hash(*parts: object) -> str:

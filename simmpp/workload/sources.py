@@ -15,11 +15,20 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Expect, Strict, Text, mistake, one_of, parsed_by, structure
-from simmpp.common.units import shown
+from simmpp.common.strict import (
+    Expect,
+    Strict,
+    Text,
+    is_line,
+    mistake,
+    one_of,
+    only,
+    parsed_by,
+    structure,
+)
 from simmpp.scene.cut import OBJECTS, cut_named
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import load_nff
@@ -72,11 +81,9 @@ SOURCES = {
 FILES = [key for key, kind in SOURCES.items() if kind.is_file]
 
 
-def _size(value: object) -> int:
-    """A size that some scene may have; the scene's generator knows the largest."""
-    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30:
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {SIZE}")
+def _is_size(value: object) -> bool:
+    """Could some scene have it? The scene's generator knows the largest."""
+    return isinstance(value, int) and not isinstance(value, bool) and 1 <= value < 10**30
 
 
 def _objects(value: Any) -> Any:
@@ -97,25 +104,18 @@ Objects = Annotated[str | dict[str, int], parsed_by(_objects), _OBJECTS]
 class SceneSettings(Strict):
     """What is rendered: one of SOURCES. Text such as ``mountain:5`` is short for it."""
 
-    spd: Annotated[str, *one_of(*known_names())] | None = Field(
-        default=None, description="a scene of the Standard Procedural Databases (Haines 1987)"
-    )
-    size: Annotated[int, parsed_by(_size), Expect(SIZE)] | None = Field(
-        default=None, description="size of that scene; the SPD's own when not given"
-    )
-    nff: Text | None = Field(
-        default=None, description="an NFF file, relative to the configuration's folder"
-    )
-    mesh: Text | None = Field(
-        default=None, description="a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"
-    )
-    objects: Objects | None = Field(
-        default=None, description="how a mesh is cut into objects; components when not given"
-    )
-
-    workload: Text | None = Field(
-        default=None, description="rays of another renderer, in Parquet or npz, in place of a scene"
-    )
+    spd: Annotated[str, *one_of(*known_names())] | None = None
+    """a scene of the Standard Procedural Databases (Haines 1987)"""
+    size: Annotated[int, *only(_is_size, Expect(SIZE))] | None = None
+    """size of that scene; the SPD's own when not given"""
+    nff: Text | None = None
+    """an NFF file, relative to the configuration's folder"""
+    mesh: Text | None = None
+    """a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"""
+    objects: Objects | None = None
+    """how a mesh is cut into objects; components when not given"""
+    workload: Text | None = None
+    """rays of another renderer, in Parquet or npz, in place of a scene"""
 
     @field_validator("size")
     @classmethod
@@ -181,14 +181,13 @@ def _long_file(name: str) -> dict[str, object]:
     return {"nff" if name.lower().endswith(".nff") else "mesh": name}
 
 
-def _scene_or_text(value: object) -> object:
-    text = isinstance(value, str) and value and value.isprintable()
-    if text or isinstance(value, Mapping | os.PathLike):
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {A_SCENE}")
+def _is_scene_or_text(value: object) -> bool:
+    return is_line(value) or isinstance(value, Mapping | os.PathLike)
 
 
-SceneKey = Annotated[SceneSettings, parsed_by(long_scene), parsed_by(_scene_or_text)]
+SceneKey = Annotated[
+    SceneSettings, parsed_by(long_scene), only(_is_scene_or_text, Expect(A_SCENE))[0]
+]
 """The last validator is asked first."""
 
 

@@ -16,7 +16,7 @@ from simmpp.config.config import config_from_mapping, described
 from simmpp.config.keys import find_keys, key_table, keys, listed_keys, with_table
 from simmpp.machine.constants import OTHERS, key_of
 from simmpp.machine.machine import Machine
-from simmpp.machine.presets import load_preset, preset_names
+from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
 
 README = Path(__file__).parents[3] / "configs" / "README.md"
 CONSTANTS = [key_of(field.name) for field in fields(Machine) if field.name not in OTHERS]
@@ -39,7 +39,8 @@ def test_the_readme_has_the_present_table() -> None:
 @pytest.mark.parametrize("constant", SCALARS)
 def test_a_constant_of_the_machine_is_told_of_everywhere(constant: str) -> None:
     key = keys()[f"machine.{constant}"]
-    assert key.expect.unit and key.expect.schema and key.expect.takes and key.default == "preset's"
+    default = f"{load_preset(DEFAULT_PRESET).texts[constant]} ({DEFAULT_PRESET})"
+    assert key.expect.unit and key.expect.schema and key.expect.takes and key.default == default
     assert len(key.meaning) > 8 and key.meaning.endswith(".")
     assert f"| `{key.name}` |" in README.read_text(encoding="utf-8")
     printed = CliRunner().invoke(main, ["keys", key.name], env={"COLUMNS": "500"}).stdout

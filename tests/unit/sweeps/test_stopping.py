@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from simmpp.common.validate import MOST_SEED
 from simmpp.config.config import config_from_mapping
-from simmpp.config.values import MOST_SEED
 from simmpp.sweeps.intervals import half_width
 from simmpp.sweeps.stopping import (
     CORRECTED,
