@@ -12,12 +12,13 @@ import math
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
+from typing import get_args
 
 from simmpp.common.files import write_csv
 from simmpp.engine.simulate import simulate
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine
-from simmpp.model.analytical import RAY_MESSAGES, analytical, rays_of
+from simmpp.model.analytical import RayMessages, analytical, rays_of
 from simmpp.model.border import FRACTIONS
 from simmpp.model.costs import costs_of
 from simmpp.model.synchronous import DATAFLOWS, synchronous
@@ -40,6 +41,7 @@ MACHINES: dict[str, dict[str, object]] = {
 }
 """Only with the last two is the border where messages hold several rays."""
 ASYNCHRONOUS = (PolicyParameters("object", merge_requests=False), PolicyParameters("ray"))
+RAY_MESSAGES: tuple[RayMessages, ...] = get_args(RayMessages)
 MODELS = (*RAY_MESSAGES, "synchronous")
 
 Row = dict[str, str | int | float]

@@ -14,7 +14,8 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from simmpp.sweeps.intervals import quantile
+from scipy.special import stdtrit
+
 from simmpp.sweeps.profits import MEASURES
 from simmpp.sweeps.stopping import CORRECTED, FEWEST
 
@@ -33,8 +34,8 @@ def deviation(row: Row, measure: str) -> float:
 
 def seeds_for(relative_deviation: float) -> int:
     """The least number of seeds, 8 at least, whose interval is within the tolerance."""
-    n = FEWEST
-    while quantile(n - 1, CORRECTED) * relative_deviation / math.sqrt(n) > TOLERANCE:
+    n, percentile = FEWEST, (1 + CORRECTED) / 2
+    while stdtrit(n - 1, percentile) * relative_deviation / math.sqrt(n) > TOLERANCE:
         n += 1
     return n
 
