@@ -7,11 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Tables
 
 RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
 """Beginnings of the names of arrays, and the one array that is of no table."""
-ITINERARIES = ("itinerary_offsets", "itinerary_objects")
 
 
 def read(path: Path) -> Tables:
@@ -24,13 +23,12 @@ def read(path: Path) -> Tables:
         arrays: dict[str, Column] = {name: file[name] for name in file.files}
     for name, array in arrays.items():
         if array.ndim != 1:
-            raise WorkloadError(
-                f"array {name}: it has {array.ndim} dimensions, expected 1", where=where
-            )
+            problem = f"array {name}: it has {array.ndim} dimensions, expected 1"
+            raise WorkloadError(problem, where=where)
     picture = arrays.pop(PICTURE, None)
-    itineraries = {name: arrays.pop(name) for name in ITINERARIES if name in arrays}
+    itineraries = {name: arrays.pop(name) for name in ITINERARY if name in arrays}
     if len(itineraries) < 2:
-        raise WorkloadError(f"expected the arrays {' and '.join(ITINERARIES)}", where=where)
+        raise WorkloadError(f"expected the arrays {' and '.join(ITINERARY)}", where=where)
     n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
     rays = _table(where, RAY_PREFIX, arrays, n_rays)
     rays.columns.update(itineraries)
@@ -44,16 +42,16 @@ def read(path: Path) -> Tables:
 def write(tables: Tables, path: Path) -> None:
     """Write both tables into one uncompressed file."""
     arrays = dict(tables.rays.columns)
-    named = {name: arrays.pop(name) for name in ITINERARIES}
-    for table, columns in ((tables.rays, arrays), (tables.objects, tables.objects.columns)):
-        named |= {table.prefix + name: column for name, column in columns.items()}
+    named = {name: arrays.pop(name) for name in ITINERARY}
+    for prefix, columns in ((RAY_PREFIX, arrays), (OBJECT_PREFIX, tables.objects.columns)):
+        named |= {prefix + name: column for name, column in columns.items()}
     if tables.picture is not None:
         named[PICTURE] = tables.picture
     with open(path, "wb") as file:
         np.savez(file, allow_pickle=False, **named)
 
 
-def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> Table:
+def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> CheckedTable:
     if rows > MOST_ROWS:
         raise WorkloadError(f"{rows} rows: expected at most {MOST_ROWS}", where=where)
     columns = {
@@ -61,7 +59,7 @@ def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> Tab
         for name, array in arrays.items()
         if name.startswith(prefix)
     }
-    table = Table(where, prefix, rows, columns)
+    table = CheckedTable(where, prefix, rows, columns)
     for name, column in columns.items():
         if len(column) != rows:
             table.fail(name, f"it has {len(column)} entries, expected {rows}")
