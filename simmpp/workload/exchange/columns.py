@@ -115,7 +115,7 @@ def _what(column: Column) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Tables:
+class Content:
     """What a file holds; itineraries are two columns of rays: offsets (rows + 1) and objects."""
 
     rays: CheckedTable

@@ -24,7 +24,7 @@ from simmpp.workload.exchange.columns import (
     WORKLOAD_SUFFIXES,
     CheckedTable,
     Column,
-    Tables,
+    Content,
     is_workload,
 )
 from simmpp.workload.exchange.rays import rays_of
@@ -85,7 +85,7 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
         **({"test_ps": workload.object_test_ps} if len(workload.object_test_ps) else {}),
         **dict(zip("xyz", workload.object_centroids.T, strict=True)),
     }
-    tables = Tables(
+    tables = Content(
         CheckedTable(str(path), "", workload.n_rays, rays),
         CheckedTable(str(path), "", workload.n_objects, objects),
         np.array(workload.picture),
@@ -104,12 +104,12 @@ def _format(path: Path) -> Any:
     return parquet
 
 
-def _read(path: Path) -> Tables:
+def _read(path: Path) -> Content:
     tables = _format(path)
     if not path.is_file():
         raise WorkloadError("there is no such file", where=str(path))
     try:
-        read: Tables = tables.read(path)
+        read: Content = tables.read(path)
     except UNREADABLE as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         line = " ".join(reason.split())[:200]
@@ -134,7 +134,7 @@ def _objects_of(table: CheckedTable) -> dict[str, NDArray[Any]]:
     }
 
 
-def _picture(tables: Tables, n_primaries: int) -> tuple[int, int]:
+def _picture(tables: Content, n_primaries: int) -> tuple[int, int]:
     """Rows and columns of primary rays."""
     if tables.picture is None:
         return 1, n_primaries

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Tables
+from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Content
 
 RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
 """Beginnings of the names of arrays, and the one array that is of no table."""
 
 
-def read(path: Path) -> Tables:
+def read(path: Path) -> Content:
     """Both tables; raises WorkloadError or whatever numpy and zipfile raise for a bad file."""
     where = str(path)
     file = np.load(path, allow_pickle=False)
@@ -36,10 +36,10 @@ def read(path: Path) -> Tables:
     for name in arrays:
         if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
             raise WorkloadError(f"array {name[:40]!r}: it is unknown", where=where)
-    return Tables(rays, objects, picture)
+    return Content(rays, objects, picture)
 
 
-def write(tables: Tables, path: Path) -> None:
+def write(tables: Content, path: Path) -> None:
     """Write both tables into one uncompressed file."""
     arrays = dict(tables.rays.columns)
     named = {name: arrays.pop(name) for name in ITINERARY}

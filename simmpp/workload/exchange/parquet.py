@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 from pyarrow import parquet
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import LONGEST_WORD, MOST_ROWS, CheckedTable, Column, Tables
+from simmpp.workload.exchange.columns import LONGEST_WORD, MOST_ROWS, CheckedTable, Column, Content
 
 NULL_MEANS_NONE = ("parent", "hit")
 """Columns in which a missing value is the same as -1."""
@@ -23,7 +23,7 @@ def objects_path(path: Path) -> Path:
     return path.with_suffix(f".objects{path.suffix}")
 
 
-def read(path: Path) -> Tables:
+def read(path: Path) -> Content:
     """Both tables; raises WorkloadError, or OSError and ValueError for what is no Parquet."""
     try:
         return _tables(path)
@@ -31,7 +31,7 @@ def read(path: Path) -> Tables:
         raise ValueError(str(error)) from None
 
 
-def _tables(path: Path) -> Tables:
+def _tables(path: Path) -> Content:
     beside = objects_path(path)
     if not beside.is_file():
         expected = f"expected the table of objects beside it, {beside.name}"
@@ -40,10 +40,10 @@ def _tables(path: Path) -> Tables:
     objects, _ = _table(beside)
     text = metadata.get(PICTURE)
     picture = None if text is None else np.array([int(word) for word in text.split()])
-    return Tables(rays, objects, picture)
+    return Content(rays, objects, picture)
 
 
-def write(tables: Tables, path: Path) -> None:
+def write(tables: Content, path: Path) -> None:
     """Write both tables; words as dictionaries, itineraries as lists."""
     columns = dict(tables.rays.columns)
     offsets, objects = columns.pop("itinerary_offsets"), columns.pop("itinerary_objects")

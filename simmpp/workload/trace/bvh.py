@@ -31,7 +31,7 @@ class Tree(NamedTuple):
     """(nodes, 8) int32: a node, or ~leaf, or EMPTY."""
 
 
-class Memory(NamedTuple):
+class Scratch(NamedTuple):
     """What building a tree writes to."""
 
     order: Ints
@@ -58,7 +58,7 @@ def build(boxes: Floats) -> Tree:
     Equal boxes give equal trees.
     """
     n = len(boxes)
-    memory = Memory(
+    memory = Scratch(
         order=np.arange(n, dtype=np.int32),
         moving=np.empty(n, np.int32),
         cuts=np.empty(WIDTH + 1, np.int64),
@@ -80,7 +80,7 @@ def build(boxes: Floats) -> Tree:
 
 @njit
 def _build(
-    boxes: Floats, memory: Memory, bounds: Floats, children: Ints, spans: NDArray[np.int64]
+    boxes: Floats, memory: Scratch, bounds: Floats, children: Ints, spans: NDArray[np.int64]
 ) -> int:
     """Fill the arrays of a tree; how many nodes it has."""
     n_nodes = 1
@@ -103,7 +103,7 @@ def _build(
 
 
 @kernel
-def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
+def _cut_in_eight(boxes: Floats, memory: Scratch, low: int, high: int) -> int:
     """Cut order[low:high] into at most eight segments; how many there are."""
     cuts, costs = memory.cuts, memory.costs
     cuts[0], cuts[1] = low, high
@@ -129,7 +129,7 @@ def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
 
 
 @kernel
-def _cost(boxes: Floats, memory: Memory, low: int, high: int) -> float:
+def _cost(boxes: Floats, memory: Scratch, low: int, high: int) -> float:
     """Surface times number of boxes; -1 for a single one, which is never split."""
     if high - low < 2:
         return -1.0
@@ -138,7 +138,7 @@ def _cost(boxes: Floats, memory: Memory, low: int, high: int) -> float:
 
 
 @kernel
-def _unite(boxes: Floats, memory: Memory, low: int, high: int) -> None:
+def _unite(boxes: Floats, memory: Scratch, low: int, high: int) -> None:
     """Make memory.box the box of order[low:high]."""
     _clear(memory.box)
     for i in range(low, high):
@@ -167,7 +167,7 @@ def _area(box: Floats) -> float:
 
 
 @kernel
-def _split(boxes: Floats, memory: Memory, low: int, high: int) -> int:
+def _split(boxes: Floats, memory: Scratch, low: int, high: int) -> int:
     """Reorder order[low:high] about the cheapest plane between bins; its position."""
     axis, start, extent = _longest_axis(boxes, memory.order, low, high)
     middle = low
@@ -202,7 +202,7 @@ def _bin(boxes: Floats, i: int, axis: int, start: float, per_bin: float) -> int:
 
 @kernel
 def _cheapest_plane(
-    boxes: Floats, memory: Memory, low: int, high: int, axis: int, start: float, per_bin: float
+    boxes: Floats, memory: Scratch, low: int, high: int, axis: int, start: float, per_bin: float
 ) -> int:
     """The first bin of the upper part, by the least sum of surface times number."""
     bins, counts, planes, below = memory.bins, memory.counts, memory.planes, memory.box
@@ -233,7 +233,7 @@ def _cheapest_plane(
 @kernel
 def _partition(
     boxes: Floats,
-    memory: Memory,
+    memory: Scratch,
     low: int,
     high: int,
     axis: int,
