@@ -12,12 +12,6 @@ ORIGIN: Floats = np.zeros(3)
 """The origin of the scene's own coordinates."""
 
 
-def box(obj: SceneObject) -> Floats:
-    """Exact bounds of an object: (2, 3) float64, low and high corner."""
-    bounds: Floats = boxes([obj])[0]
-    return bounds
-
-
 def boxes(objects: Sequence[SceneObject], origin: Floats = ORIGIN) -> Floats:
     """Bounds of objects, seen from ``origin`` (3,): (n, 2, 3) float64, low and high corners.
 

@@ -6,7 +6,7 @@ Coordinates that are not finite are found where they are measured, by the tracer
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -16,19 +16,20 @@ from simmpp.scene.scene import Material, MeshPart, Polygon, Scene, SceneObject
 
 def check_scene(scene: Scene) -> None:
     """Raise SceneError for a material, a colour or an object that makes no sense."""
+    for what, problem in _problems(scene):
+        if problem:
+            raise SceneError(f"{what} {problem}", where=scene.name)
+
+
+def _problems(scene: Scene) -> Iterator[tuple[str, str]]:
+    """What is looked at, and what is wrong with it: nothing, mostly."""
     for number, material in enumerate(scene.materials):
-        _require(_problem_of_material(material), f"material {number}", scene.name)
+        yield f"material {number}", _problem_of_material(material)
     for number, light in enumerate(scene.lights):
-        _require(_problem_of_numbers(light.colour), f"the colour of light {number}", scene.name)
-    _require(_problem_of_numbers(scene.background), "the background", scene.name)
+        yield f"the colour of light {number}", _problem_of_numbers(light.colour)
+    yield "the background", _problem_of_numbers(scene.background)
     for number, obj in enumerate(scene.objects):
-        problem = _problem_of_object(obj, len(scene.materials))
-        _require(problem, f"object {number}", scene.name)
-
-
-def _require(problem: str, what: str, name: str) -> None:
-    if problem:
-        raise SceneError(f"{what} {problem}", where=name)
+        yield f"object {number}", _problem_of_object(obj, len(scene.materials))
 
 
 def _problem_of_material(m: Material) -> str:

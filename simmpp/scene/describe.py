@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from simmpp.scene.boxes import boxes, scene_box
-from simmpp.scene.scene import Scene, SceneObject
+from simmpp.scene.scene import Camera, Light, Material, Scene, SceneObject
 from simmpp.scene.triangles import n_triangles
 from simmpp.scene.wire import bytes_on_the_wire
 
@@ -35,11 +35,9 @@ def describe(scene: Scene) -> dict[str, Any]:
         "reflecting": sum(surface.reflects for surface in surfaces),
         "transmitting": sum(surface.transmits for surface in surfaces),
         "materials": _materials(scene),
-        "lights": [
-            {"position": list(light.position), "colour": list(light.colour)}
-            for light in scene.lights
-        ],
-        "camera": _camera(scene),
+        "lights": [_plain(light) for light in scene.lights],
+        # No renderer here has a near plane.
+        "camera": {k: v for k, v in _plain(scene.camera).items() if k != "hither"},
         "background": list(scene.background),
     }
 
@@ -70,12 +68,7 @@ def _materials(scene: Scene) -> list[dict[str, Any]]:
         {
             "id": i,
             "n_objects": users[i],
-            "colour": list(material.colour),
-            "kd": material.kd,
-            "ks": material.ks,
-            "shine": material.shine,
-            "transmittance": material.transmittance,
-            "ior": material.ior,
+            **_plain(material),
             "reflects": material.reflects,
             "transmits": material.transmits,
         }
@@ -83,12 +76,7 @@ def _materials(scene: Scene) -> list[dict[str, Any]]:
     ]
 
 
-def _camera(scene: Scene) -> dict[str, Any]:
-    camera = scene.camera
-    return {
-        "eye": list(camera.eye),
-        "at": list(camera.at),
-        "up": list(camera.up),
-        "angle_degrees": camera.angle_degrees,
-        "resolution": list(camera.resolution),
-    }
+def _plain(thing: Material | Light | Camera) -> dict[str, Any]:
+    """Its fields, vectors as lists."""
+    fields = vars(thing).items()
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in fields}

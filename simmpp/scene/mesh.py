@@ -21,14 +21,12 @@ from simmpp.scene.boxes import scene_box
 from simmpp.scene.cut import Cut, Indices, compacted, cut_named, welded
 from simmpp.scene.framing import framing
 from simmpp.scene.nff_words import LARGEST
-from simmpp.scene.scene import Floats, Material, MeshPart, Scene, Vector
+from simmpp.scene.scene import SKY_BLUE, Floats, Material, MeshPart, Scene, Vector
 
 Y_UP: Vector = (0.0, 1.0, 0.0)
 Z_UP: Vector = (0.0, 0.0, 1.0)
 Z_UP_FORMATS = (".stl",)
 """Formats of construction, where z points up; in the others (glTF by its standard) y does."""
-BACKGROUND: Vector = (0.078, 0.361, 0.753)
-"""That of most SPD scenes."""
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
 MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
@@ -67,7 +65,7 @@ def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> S
     up = Z_UP if file.suffix.lower() in Z_UP_FORMATS else Y_UP
     camera, lights = framing(bounds, up=up)
     name = f"{file.name}:{label}"
-    return Scene(name, tuple(parts), tuple(materials), lights, camera, BACKGROUND)
+    return Scene(name, tuple(parts), tuple(materials), lights, camera, SKY_BLUE)
 
 
 def _parts(node: _Node, cut: Cut, material: int) -> Iterator[MeshPart]:
@@ -89,15 +87,12 @@ def _nodes(file: Path) -> Iterator[_Node]:
             continue
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         if faces.min() < 0 or faces.max() >= len(vertices):
-            raise SceneError(
-                f"a face of {name!r} names a vertex that is not there", where=str(file)
-            )
+            problem = f"a face of {name!r} names a vertex that is not there"
+            raise SceneError(problem, where=str(file))
         vertices = _placed(vertices, np.asarray(matrix, dtype=np.float64))
         if not np.all(np.abs(vertices[faces]) <= LARGEST):
-            raise SceneError(
-                f"a vertex of {name!r} is not a finite number of at most {LARGEST:g}",
-                where=str(file),
-            )
+            problem = f"a vertex of {name!r} is not a finite number of at most {LARGEST:g}"
+            raise SceneError(problem, where=str(file))
         if np.linalg.det(matrix[:3, :3]) < 0:  # a mirrored copy would be inside out
             faces = faces[:, ::-1]
         yield _Node(str(name), vertices, faces, _material(mesh))
@@ -116,10 +111,10 @@ def _read(file: Path) -> Any:
             opened.read(1)  # a folder, or a file that may not be read, is told by its own error
         if kind not in mesh_formats():
             formats = ", ".join(sorted(mesh_formats()))
-            raise SceneError(
-                f"neither NFF (.nff) nor a mesh that trimesh reads ({formats})", where=str(file)
-            )
-        return trimesh.load_scene(str(file), process=False, **_options(kind))
+            problem = f"neither NFF (.nff) nor a mesh that trimesh reads ({formats})"
+            raise SceneError(problem, where=str(file))
+        options = {"split_objects": True} if kind == "obj" else {}  # others know no such option
+        return trimesh.load_scene(str(file), process=False, **options)
     except SceneError:
         raise
     except OSError as error:
@@ -131,10 +126,6 @@ def _read(file: Path) -> Any:
     except Exception as error:  # its readers raise whatever their parsers do
         reason = (str(error).strip().splitlines() or [""])[0][:200] or type(error).__name__
         raise SceneError(f"not a readable {kind} mesh: {reason}", where=str(file)) from None
-
-
-def _options(kind: str) -> dict[str, bool]:
-    return {"split_objects": True} if kind == "obj" else {}
 
 
 def _placed(vertices: Floats, matrix: Floats) -> Floats:

@@ -8,6 +8,7 @@ absolute value.
 from __future__ import annotations
 
 import math
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import NoReturn
@@ -119,16 +120,14 @@ class _Reader:
             if hither < 0:
                 self._fail(f"the hither distance must not be negative, got {hither:g}")
         if words.skip("resolution"):
-            resolution = self._resolution(), self._resolution()
+            side = partial(words.count, "the resolution", 1, MAX_RESOLUTION)
+            resolution = side(), side()
         towards = np.subtract(at, eye)
         sideways = np.linalg.norm(np.cross(towards, up))
         # "not above" rather than "at most": what overflowed to NaN is no direction either.
         if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(up):
             self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
         self.camera = Camera(eye, at, up, angle, hither, resolution)
-
-    def _resolution(self) -> int:
-        return self.words.count("the resolution", 1, MAX_RESOLUTION)
 
     def _background(self) -> None:
         if self.background is not None:
@@ -179,9 +178,8 @@ class _Reader:
             self._fail("the radii of a cone must have the same sign")
         if math.dist(base, apex) == 0:
             self._fail("a cone needs a length: its base and apex are the same point")
-        self.objects.append(
-            Cone(base, abs(base_radius), apex, abs(apex_radius), self._current_material())
-        )
+        material = self._current_material()
+        self.objects.append(Cone(base, abs(base_radius), apex, abs(apex_radius), material))
 
     def _polygon(self) -> None:
         n = self.words.count("the number of vertices of a polygon", 3, MAX_VERTICES)
@@ -211,31 +209,19 @@ def write_nff(scene: Scene) -> str:
 
     An ``f`` line is written where the material changes, as the SPD's generators do.
     """
-    camera = scene.camera
-    parts = [
-        nff_text.background(scene.background),
-        nff_text.view(
-            camera.eye, camera.at, camera.up, camera.angle_degrees, camera.hither, camera.resolution
-        ),
+    # Fields of a camera and a material are called as the writers of their lines call them.
+    parts = [nff_text.background(scene.background), nff_text.view(**vars(scene.camera))]
+    parts += [
+        nff_text.light(light.position, () if light.colour == WHITE else light.colour)
+        for light in scene.lights
     ]
-    for light in scene.lights:
-        white = light.colour == WHITE
-        parts.append(
-            nff_text.light(light.position)
-            if white
-            else nff_text.coloured_light(light.position, light.colour)
-        )
     current = -1
     for obj in scene.objects:
         if obj.material != current:
             current = obj.material
-            parts.append(_material_line(scene.materials[current]))
+            parts.append(nff_text.material(**vars(scene.materials[current])))
         parts.append(_object_lines(obj))
     return "".join(parts)
-
-
-def _material_line(m: Material) -> str:
-    return nff_text.material(m.colour, m.kd, m.ks, m.shine, m.transmittance, m.ior)
 
 
 def _object_lines(obj: SceneObject) -> str:

@@ -41,13 +41,8 @@ def background(colour: Triple) -> str:
     return f"b {numbers(*colour)}\n"
 
 
-def light(position: Triple) -> str:
-    """An ``l`` line without the optional colour."""
-    return f"l {numbers(*position)}\n"
-
-
-def coloured_light(position: Triple, colour: Triple) -> str:
-    """An ``l`` line with the optional colour, which the SPD never writes."""
+def light(position: Triple, colour: Triple = ()) -> str:
+    """An ``l`` line; the SPD never writes the optional colour."""
     return f"l {numbers(*position, *colour)}\n"
 
 

@@ -130,12 +130,12 @@ class Words:
 
     def _line(self, index: int) -> int:
         """Line of the word of that index; the last line that has words if there is none."""
-        seen, last = 0, 1
+        n_words, last = 0, 1
         for number, line in enumerate(self.text.split("\n"), start=1):
-            words = len(line.split())
+            words = line.split()
             if words:
                 last = number
-            seen += words
-            if index < seen:
+            n_words += len(words)
+            if index < n_words:
                 return number
         return last

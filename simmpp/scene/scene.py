@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 Vector = tuple[float, float, float]
 Floats = NDArray[np.float64]
+SKY_BLUE: Vector = (0.078, 0.361, 0.753)
+"""Background of most SPD scenes, "UNC sky blue"."""
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,10 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
-from simmpp.workload.trace.generations import Rays, children, first_generation, joined, spawning
+from simmpp.workload.trace.generations import children, first_generation, spawning
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.ray_batch import RayBatch, joined
 from simmpp.workload.trace.tracer import BATCH, trace
 from simmpp.workload.workload import SHADOW
 
@@ -58,7 +59,7 @@ def stages_of(scene: Scene, picture: Picture) -> Stages:
     return stages
 
 
-def batch(stages, geometry: Geometry, proposer: Intersector, rules, rays: Rays, depth: int) -> Rays:
+def batch(stages, geometry: Geometry, proposer: Intersector, rules, rays: RayBatch, depth: int):
     asks = rays.kinds != SHADOW
     claims = np.full((len(asks), 2), -1, dtype=np.int32)
     some = rays.origins[asks], rays.directions[asks]
@@ -69,7 +70,7 @@ def batch(stages, geometry: Geometry, proposer: Intersector, rules, rays: Rays, 
         "itineraries and hits",
         find_itineraries,
         geometry.shapes,
-        *rays[:5],
+        rays,
         claims,
     )
     young, _ = stages.time("spawning", children, geometry, rays, hits, distances, rules, depth, 0)

@@ -19,10 +19,10 @@ from oracles.mitsuba_scene import MitsubaScene
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
-from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import find_itineraries
-from simmpp.workload.trace.replay import generations, traced
+from simmpp.workload.trace.ray_batch import RayBatch
+from simmpp.workload.trace.replay import recorded_generations, traced
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import POLYGON, SHADOW
 
@@ -81,22 +81,26 @@ def compare(scene: Scene, resolution: int, n_rays: int, seed: int = 0) -> Compar
     ours = traced(scene, picture, workload)
     theirs = MitsubaScene(scene, ours.frame)
     rng, total = np.random.default_rng(seed), Comparison(*[0] * 8, 0.0)
-    for first, rays in generations(ours):
+    for first, rays in recorded_generations(ours):
         chosen = rng.permutation(len(rays.kinds))[:n_rays]
         hits = workload.hits[first + chosen]
         distances = workload.hit_distances[first + chosen] * ours.frame.scale
-        some = Rays._make(array[chosen] for array in rays)
+        some = RayBatch._make(array[chosen] for array in rays)
         total += _compared(ours.geometry, theirs, some, hits, distances)
     return total
 
 
 def _compared(
-    geometry: Geometry, theirs: MitsubaScene, rays: Rays, hits: np.ndarray, distances: np.ndarray
+    geometry: Geometry,
+    theirs: MitsubaScene,
+    rays: RayBatch,
+    hits: np.ndarray,
+    distances: np.ndarray,
 ) -> Comparison:
     """``hits`` and ``distances`` are recorded for the rays from where they begin."""
     far = (distances > 2 * START) & (rays.limits > 2 * START)
     n_near, hits, distances = int((~far).sum()), hits[far], distances[far] - START
-    rays = Rays._make(array[far] for array in rays)
+    rays = RayBatch._make(array[far] for array in rays)
     rays = rays._replace(origins=rays.origins + START * rays.directions, limits=rays.limits - START)
     shadow = rays.kinds == SHADOW
     answers = _answers(shadow, hits, distances)
@@ -108,7 +112,7 @@ def _compared(
     )
     same = _same(answers, found)
     both = same & ~shadow & (hits >= 0) & (objects >= 0)
-    wrong = Rays._make(array[~same] for array in rays)
+    wrong = RayBatch._make(array[~same] for array in rays)
     beside = _of_a_ray_beside(geometry, wrong, found[~same])
     leaks = ~beside & _on_an_edge(geometry, wrong, distances[~same])
     n_edge, n_leaks = int(beside.sum()), int(leaks.sum())
@@ -135,7 +139,7 @@ def _same(some: np.ndarray, others: np.ndarray) -> np.ndarray:
         return (some == others) | (np.abs(some - others) < TOLERANCE)
 
 
-def _of_a_ray_beside(geometry: Geometry, rays: Rays, found: np.ndarray) -> np.ndarray:
+def _of_a_ray_beside(geometry: Geometry, rays: RayBatch, found: np.ndarray) -> np.ndarray:
     """Is the answer found that of the tracer for a ray displaced by DISPLACED? (n,) bool."""
     beside = np.zeros(len(found), bool)
     nothing = np.full(len(found), -1, np.int32)
@@ -146,18 +150,14 @@ def _of_a_ray_beside(geometry: Geometry, rays: Rays, found: np.ndarray) -> np.nd
         origins = rays.origins + DISPLACED * (np.cos(turn) * aside + np.sin(turn) * other)
         hits, distances, _, _ = find_itineraries(
             geometry.shapes,
-            origins,
-            rays.directions,
-            rays.kinds,
-            rays.limits,
-            nothing,
+            rays._replace(origins=origins, sources=nothing),
             np.stack([nothing, nothing], axis=1),
         )
         beside |= _same(_answers(rays.kinds == SHADOW, hits, distances), found)
     return beside
 
 
-def _on_an_edge(geometry: Geometry, rays: Rays, distances: np.ndarray) -> np.ndarray:
+def _on_an_edge(geometry: Geometry, rays: RayBatch, distances: np.ndarray) -> np.ndarray:
     """Is the point at that distance within DISPLACED of a triangle's edge? (n,) bool."""
     corners, *edges = np.split(geometry.shapes.surfaces[_triangle_rows(geometry)], 3, axis=1)
     starts = [corners, corners, corners + edges[0]]

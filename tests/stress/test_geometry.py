@@ -21,6 +21,7 @@ from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import PRIMARY, REFLECTED, SHADOW, Workload
@@ -60,15 +61,10 @@ def shot(made: Scene, origins, directions) -> tuple[np.ndarray, np.ndarray, Geom
     o, d = frame.points(np.array(origins, float)), np.array(directions, float)
     d = d / np.linalg.norm(d, axis=1, keepdims=True)
     n = len(o)
-    hits, distances, _, _ = find_itineraries(
-        geometry.shapes,
-        o,
-        d,
-        np.full(n, PRIMARY, np.uint8),
-        np.full(n, np.inf),
-        np.full(n, -1, np.int32),
-        Intersector(geometry).claims(o, d),
-    )
+    none = np.full(n, -1, np.int32)
+    rays = RayBatch(o, d, np.full(n, PRIMARY, np.uint8), np.full(n, np.inf), none, none)
+    claims = Intersector(geometry).claims(o, d)
+    hits, distances, _, _ = find_itineraries(geometry.shapes, rays, claims)
     return (
         hits,
         frame.scene_lengths(distances),

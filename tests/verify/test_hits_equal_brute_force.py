@@ -13,6 +13,7 @@ from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import frame_of
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import SLACK, find_itineraries
+from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.workload import PRIMARY, SHADOW
 
 RAYS = 100_000
@@ -51,10 +52,9 @@ def search(geometry, origins, directions, limits=None):
     kinds = np.full(n, PRIMARY if limits is None else SHADOW, dtype=np.uint8)
     limits = np.full(n, np.inf) if limits is None else limits
     claims = Intersector(geometry).claims(origins, directions)
-    sources = np.full(n, -1, dtype=np.int32)
-    hits, distances, counts, objects = find_itineraries(
-        geometry.shapes, origins, directions, kinds, limits, sources, claims
-    )
+    none = np.full(n, -1, dtype=np.int32)
+    rays = RayBatch(origins, directions, kinds, limits, none, none)
+    hits, distances, counts, objects = find_itineraries(geometry.shapes, rays, claims)
     return hits, distances, np.split(objects, np.cumsum(counts)[:-1])
 
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
-from simmpp.scene.scene import Vector
+from simmpp.scene.scene import SKY_BLUE, Vector
 from simmpp.scene.spd.transform import (
     IDENTITY,
-    SKY_BLUE,
     Matrix,
     rotation_about,
     rotation_y,
@@ -78,11 +77,7 @@ def _flake(
     for v in nine:
         # The direction is taken back from the rounded child, and thirds are products with a rounded
         # 1/3, as in the SPD: its files print the digits in which these differ.
-        dx, dy, dz = transform(v, turn)
-        child = (centre[0] + dx * reach, centre[1] + dy * reach, centre[2] + dz * reach)
-        towards = (
-            (child[0] - centre[0]) / reach,
-            (child[1] - centre[1]) / reach,
-            (child[2] - centre[2]) / reach,
-        )
+        (x, y, z), (dx, dy, dz) = centre, transform(v, turn)
+        child = (x + dx * reach, y + dy * reach, z + dz * reach)
+        towards = ((child[0] - x) / reach, (child[1] - y) / reach, (child[2] - z) / reach)
         _flake(depth - 1, child, radius * (1 / 3), towards, nine, parts)

@@ -6,10 +6,10 @@ Source: Haines 1987; SPD 3.x ``gears.c``.
 from __future__ import annotations
 
 import math
+from itertools import product
 
 from simmpp.scene import nff_text
-from simmpp.scene.scene import Vector
-from simmpp.scene.spd.transform import SKY_BLUE
+from simmpp.scene.scene import SKY_BLUE, Vector
 
 TEETH = 36
 PITCH = 2 * math.pi / TEETH
@@ -35,11 +35,9 @@ def nff(size: int) -> str:
         nff_text.material((1, 0.85, 0.7), 0.3, 0.6, 3.0827),
         nff_text.polygon(((2, 2, 0), (-2, 2, 0), (-2, -2, 0), (2, -2, 0))),
     ]
-    for iz in range(size):
-        for iy in range(size):
-            for ix in range(size):
-                parts.append(_material(ix, iy, iz))
-                parts.extend(_gear(size, ix, iy, iz))
+    for iz, iy, ix in product(range(size), repeat=3):
+        parts.append(_material(ix, iy, iz))
+        parts.extend(_gear(size, ix, iy, iz))
     return "".join(parts)
 
 

@@ -5,6 +5,7 @@ Source: SPD 3.x ``jacks.c`` (Haines).
 
 from __future__ import annotations
 
+import itertools
 import math
 
 from simmpp.scene import nff_text
@@ -47,11 +48,9 @@ def _jacks(frame: Matrix, scale: float, depth: int, parts: list[str]) -> None:
     parts.extend(_jack(product(scaling(JACK_SCALE), frame), scale * JACK_SCALE))
     if depth == 1:
         return
-    for x in (-0.5, 0.5):
-        for y in (-0.5, 0.5):
-            for z in (-0.5, 0.5):
-                child = product(scaling(0.5), translation(x, y, z))
-                _jacks(product(child, frame), scale / 2, depth - 1, parts)
+    for corner in itertools.product((-0.5, 0.5), repeat=3):
+        child = product(scaling(0.5), translation(*corner))
+        _jacks(product(child, frame), scale / 2, depth - 1, parts)
 
 
 def _jack(frame: Matrix, scale: float) -> list[str]:

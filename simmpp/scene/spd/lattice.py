@@ -6,9 +6,10 @@ Source: SPD 3.x ``lattice.c`` (Haines).
 from __future__ import annotations
 
 import math
+from itertools import product
 
 from simmpp.scene import nff_text
-from simmpp.scene.spd.transform import SKY_BLUE
+from simmpp.scene.scene import SKY_BLUE
 
 SPHERE = nff_text.material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827)
 CYLINDERS = tuple(
@@ -41,10 +42,8 @@ def nff(size: int) -> str:
         ),
         *map(nff_text.light, LIGHTS),
     ]
-    for i in range(n + 1):
-        for j in range(n + 1):
-            for k in range(n + 1):
-                parts.extend(_grid_point(n, (i, j, k)))
+    for cell in product(range(n + 1), range(n + 1), range(n + 1)):
+        parts.extend(_grid_point(n, cell))
     return "".join(parts)
 
 

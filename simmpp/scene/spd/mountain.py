@@ -9,14 +9,8 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
-from simmpp.scene.scene import Vector
-from simmpp.scene.spd.transform import (
-    SKY_BLUE,
-    product,
-    rotation_about,
-    rotation_z,
-    transform,
-)
+from simmpp.scene.scene import SKY_BLUE, Vector
+from simmpp.scene.spd.transform import product, rotation_about, rotation_z, transform
 
 BALL_RADIUS = 0.17
 FRACTAL_DIMENSION = 2.2

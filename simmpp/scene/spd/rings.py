@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
-from simmpp.scene.scene import Vector
-from simmpp.scene.spd.transform import SKY_BLUE, rotation_x, rotation_z, transform
+from simmpp.scene.scene import SKY_BLUE, Vector
+from simmpp.scene.spd.transform import rotation_x, rotation_z, transform
 
 TUBE_RADIUS = 0.07412
 DISTANCE = 1 / math.sin(math.pi / 8)

@@ -6,8 +6,7 @@ Source: Haines 1987; SPD 3.x ``tetra.c``.
 from __future__ import annotations
 
 from simmpp.scene import nff_text
-from simmpp.scene.scene import Vector
-from simmpp.scene.spd.transform import SKY_BLUE
+from simmpp.scene.scene import SKY_BLUE, Vector
 
 CORNERS = ((-1, -1, 1), (-1, 1, -1), (1, -1, -1), (1, 1, 1))
 FACES = ((0, 1, 2), (3, 2, 1), (2, 3, 0), (1, 0, 3))

@@ -15,8 +15,6 @@ MatrixRow = tuple[float, float, float, float]
 Matrix = tuple[MatrixRow, MatrixRow, MatrixRow, MatrixRow]
 
 IDENTITY: Matrix = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
-SKY_BLUE: Vector = (0.078, 0.361, 0.753)
-"""Background of most SPD scenes, "UNC sky blue"."""
 
 
 def rotation_x(angle: float) -> Matrix:

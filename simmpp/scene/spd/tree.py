@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 from simmpp.scene import nff_text
+from simmpp.scene.scene import SKY_BLUE
 from simmpp.scene.spd.transform import (
     IDENTITY,
-    SKY_BLUE,
     Matrix,
     product,
     rotation_x,

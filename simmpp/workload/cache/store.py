@@ -56,7 +56,11 @@ def workload_for(
     path = cached_path(digest)
     if path.exists():
         try:
-            return dataclasses.replace(_expected(load(path), digest, path), name=scene.name)
+            cached = load(path)
+            if cached.digest != digest:
+                problem = "holds the workload of another scene or picture"
+                raise WorkloadError(problem, where=str(path))
+            return dataclasses.replace(cached, name=scene.name)
         except WorkloadError as error:
             tell(f"{error}; tracing it again")
     workload = trace(scene, picture, progress)
@@ -106,13 +110,12 @@ def load(path: str | os.PathLike[str]) -> Workload:
     """
     try:
         with pa.memory_map(os.fspath(path)) as file:
-            row = pa.ipc.open_file(file).get_batch(
-                0
-            )  # keeps the pages mapped when the file is shut
+            row = pa.ipc.open_file(file).get_batch(0)  # keeps the pages when the file is shut
         row.validate(full=True)  # no array reaches beyond the file
         header = json.loads(row.schema.metadata[HEADER])
         shapes, checksum = header["shapes"], header.pop("checksum")
-        arrays = {name: _array(row[name]).reshape(shapes[name]) for name in ARRAYS}
+        lists = {name: row[name].flatten().to_numpy(zero_copy_only=True) for name in ARRAYS}
+        arrays = {name: entries.reshape(shapes[name]) for name, entries in lists.items()}
         if checksum != _checksum(header, arrays):
             raise ValueError("damaged, its checksum does not fit")
         rows, columns = header["picture"]
@@ -127,18 +130,6 @@ def load(path: str | os.PathLike[str]) -> Workload:
 def _cell(array: NDArray[Any]) -> pa.Array:
     """All entries of an array as one list."""
     return pa.LargeListArray.from_arrays(pa.array([0, array.size], pa.int64()), array.ravel())
-
-
-def _array(column: pa.Array) -> NDArray[Any]:
-    """The entries of that list where they lie."""
-    array: NDArray[Any] = column.flatten().to_numpy(zero_copy_only=True)
-    return array
-
-
-def _expected(workload: Workload, digest: str, path: Path) -> Workload:
-    if workload.digest != digest:
-        raise WorkloadError("holds the workload of another scene or picture", where=str(path))
-    return workload
 
 
 def _checksum(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> int:

@@ -14,6 +14,8 @@ from simmpp.common.errors import WorkloadError
 from simmpp.scene.nff_words import LARGEST
 
 WORKLOAD_SUFFIXES = (".parquet", ".npz")
+ITINERARY = ("itinerary_offsets", "itinerary_objects")
+"""The two columns of rays that hold one itinerary per row, as CSR."""
 Column = NDArray[Any]
 MOST_ROWS = 2**31 - 2
 """Rays, and objects, are numbered by int32; offsets have one more entry."""
@@ -27,7 +29,7 @@ def is_workload(name: str) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class CheckedTable:
     """Columns by name, all of ``rows`` entries; whatever is wrong with one raises WorkloadError."""
 
     where: str
@@ -46,9 +48,8 @@ class Table:
         """Fail at the first row that isn't good, with the value there."""
         if not good.all():
             row = int(np.argmin(good))
-            self.fail(
-                column, f"value {_shown(self.columns[column][row])}: expected {expected}", row
-            )
+            value = _shown(self.columns[column][row])
+            self.fail(column, f"value {value}: expected {expected}", row)
 
     def known(self, names: Sequence[str], required: Sequence[str] = ()) -> None:
         """Fail for a column that has no meaning, and for one that is missing."""
@@ -95,19 +96,14 @@ class Table:
         if name not in self.columns:
             return default.astype(np.uint8)
         column = self.columns[name]
-        if column.dtype.kind != "U":
-            return self.integers(name, 0, len(words) - 1, 0, f"one of {_list(words)}").astype(
-                np.uint8
-            )
-        self.require(np.isin(column, words), name, f"one of {_list(words)}")
-        indices = np.zeros(self.rows, np.uint8)
-        for index, word in enumerate(words):
-            indices[column == word] = index
-        return indices
-
-
-def _list(words: Sequence[str]) -> str:
-    return ", ".join(f"{word} ({index})" for index, word in enumerate(words))
+        choices = ", ".join(f"{word} ({index})" for index, word in enumerate(words))
+        if column.dtype.kind == "U":
+            is_word = column[:, None] == np.array(words)
+            self.require(is_word.any(axis=1), name, f"one of {choices}")
+            indices = is_word.argmax(axis=1)
+        else:
+            indices = self.integers(name, 0, len(words) - 1, 0, f"one of {choices}")
+        return indices.astype(np.uint8)
 
 
 def _shown(value: Any) -> str:
@@ -119,10 +115,10 @@ def _what(column: Column) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Tables:
+class Content:
     """What a file holds; itineraries are two columns of rays: offsets (rows + 1) and objects."""
 
-    rays: Table
-    objects: Table
+    rays: CheckedTable
+    objects: CheckedTable
     picture: Column | None
     """Rows and columns of primary rays, if the file says."""

@@ -22,9 +22,9 @@ from simmpp.workload.exchange import npz
 from simmpp.workload.exchange.columns import (
     MOST_ROWS,
     WORKLOAD_SUFFIXES,
+    CheckedTable,
     Column,
-    Table,
-    Tables,
+    Content,
     is_workload,
 )
 from simmpp.workload.exchange.rays import rays_of
@@ -68,9 +68,7 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
     written.
     """
     path = Path(path)
-    prefixes = (npz.RAY_PREFIX, npz.OBJECT_PREFIX) if _is_npz(path) else ("", "")
     finite = np.isfinite(workload.hit_distances)
-    x, y, z = workload.object_centroids.T
     rays: dict[str, Column] = {
         "itinerary_offsets": workload.itinerary_offsets,
         "itinerary_objects": workload.itinerary_objects,
@@ -85,37 +83,33 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
         "kind": np.array(OBJECT_KINDS)[workload.object_kinds],
         "triangles": workload.object_triangles,
         **({"test_ps": workload.object_test_ps} if len(workload.object_test_ps) else {}),
-        **{"x": x, "y": y, "z": z},
+        **dict(zip("xyz", workload.object_centroids.T, strict=True)),
     }
-    tables = Tables(
-        Table(str(path), prefixes[0], workload.n_rays, rays),
-        Table(str(path), prefixes[1], workload.n_objects, objects),
+    tables = Content(
+        CheckedTable(str(path), "", workload.n_rays, rays),
+        CheckedTable(str(path), "", workload.n_objects, objects),
         np.array(workload.picture),
     )
     _format(path).write(tables, path)
-
-
-def _is_npz(path: Path) -> bool:
-    return path.suffix.lower() == ".npz"
 
 
 def _format(path: Path) -> Any:
     """The module that reads and writes such files."""
     if not is_workload(path.name):
         raise WorkloadError(f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}", where=str(path))
-    if _is_npz(path):
+    if path.suffix.lower() == ".npz":
         return npz
     from simmpp.workload.exchange import parquet  # pyarrow takes a third of a second
 
     return parquet
 
 
-def _read(path: Path) -> Tables:
+def _read(path: Path) -> Content:
     tables = _format(path)
     if not path.is_file():
         raise WorkloadError("there is no such file", where=str(path))
     try:
-        read: Tables = tables.read(path)
+        read: Content = tables.read(path)
     except UNREADABLE as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         line = " ".join(reason.split())[:200]
@@ -123,7 +117,7 @@ def _read(path: Path) -> Tables:
     return read
 
 
-def _objects_of(table: Table) -> dict[str, NDArray[Any]]:
+def _objects_of(table: CheckedTable) -> dict[str, NDArray[Any]]:
     """The fields of a workload that hold objects."""
     table.known(OBJECT_COLUMNS, required=("bytes",))
     mesh = np.full(table.rows, MESH, np.uint8)
@@ -140,7 +134,7 @@ def _objects_of(table: Table) -> dict[str, NDArray[Any]]:
     }
 
 
-def _picture(tables: Tables, n_primaries: int) -> tuple[int, int]:
+def _picture(tables: Content, n_primaries: int) -> tuple[int, int]:
     """Rows and columns of primary rays."""
     if tables.picture is None:
         return 1, n_primaries
@@ -149,8 +143,6 @@ def _picture(tables: Tables, n_primaries: int) -> tuple[int, int]:
     rows, columns = (int(side) for side in sides) if whole else (0, 0)
     if rows * columns != n_primaries:
         text = " ".join(map(str, sides.tolist()))[:40]
-        raise WorkloadError(
-            f"picture: value {text}: expected rows and columns of the {n_primaries} primary rays",
-            where=tables.rays.where,
-        )
+        expected = f"expected rows and columns of the {n_primaries} primary rays"
+        raise WorkloadError(f"picture: value {text}: {expected}", where=tables.rays.where)
     return rows, columns

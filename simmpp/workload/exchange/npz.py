@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Content
 
 RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
 """Beginnings of the names of arrays, and the one array that is of no table."""
-ITINERARIES = ("itinerary_offsets", "itinerary_objects")
 
 
-def read(path: Path) -> Tables:
+def read(path: Path) -> Content:
     """Both tables; raises WorkloadError or whatever numpy and zipfile raise for a bad file."""
     where = str(path)
     file = np.load(path, allow_pickle=False)
@@ -24,13 +23,12 @@ def read(path: Path) -> Tables:
         arrays: dict[str, Column] = {name: file[name] for name in file.files}
     for name, array in arrays.items():
         if array.ndim != 1:
-            raise WorkloadError(
-                f"array {name}: it has {array.ndim} dimensions, expected 1", where=where
-            )
+            problem = f"array {name}: it has {array.ndim} dimensions, expected 1"
+            raise WorkloadError(problem, where=where)
     picture = arrays.pop(PICTURE, None)
-    itineraries = {name: arrays.pop(name) for name in ITINERARIES if name in arrays}
+    itineraries = {name: arrays.pop(name) for name in ITINERARY if name in arrays}
     if len(itineraries) < 2:
-        raise WorkloadError(f"expected the arrays {' and '.join(ITINERARIES)}", where=where)
+        raise WorkloadError(f"expected the arrays {' and '.join(ITINERARY)}", where=where)
     n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
     rays = _table(where, RAY_PREFIX, arrays, n_rays)
     rays.columns.update(itineraries)
@@ -38,22 +36,22 @@ def read(path: Path) -> Tables:
     for name in arrays:
         if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
             raise WorkloadError(f"array {name[:40]!r}: it is unknown", where=where)
-    return Tables(rays, objects, picture)
+    return Content(rays, objects, picture)
 
 
-def write(tables: Tables, path: Path) -> None:
+def write(tables: Content, path: Path) -> None:
     """Write both tables into one uncompressed file."""
     arrays = dict(tables.rays.columns)
-    named = {name: arrays.pop(name) for name in ITINERARIES}
-    for table, columns in ((tables.rays, arrays), (tables.objects, tables.objects.columns)):
-        named |= {table.prefix + name: column for name, column in columns.items()}
+    named = {name: arrays.pop(name) for name in ITINERARY}
+    for prefix, columns in ((RAY_PREFIX, arrays), (OBJECT_PREFIX, tables.objects.columns)):
+        named |= {prefix + name: column for name, column in columns.items()}
     if tables.picture is not None:
         named[PICTURE] = tables.picture
     with open(path, "wb") as file:
         np.savez(file, allow_pickle=False, **named)
 
 
-def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> Table:
+def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> CheckedTable:
     if rows > MOST_ROWS:
         raise WorkloadError(f"{rows} rows: expected at most {MOST_ROWS}", where=where)
     columns = {
@@ -61,7 +59,7 @@ def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> Tab
         for name, array in arrays.items()
         if name.startswith(prefix)
     }
-    table = Table(where, prefix, rows, columns)
+    table = CheckedTable(where, prefix, rows, columns)
     for name, column in columns.items():
         if len(column) != rows:
             table.fail(name, f"it has {len(column)} entries, expected {rows}")

@@ -33,10 +33,8 @@ def by_generation(parents: Ints, kinds: NDArray[np.uint8], pixels: Ints) -> tupl
 
 @njit
 def _breadth_first(primaries: Ints, first_child: Ints, children: Ints) -> tuple[Ints, Ints]:
-    order, roots = (
-        np.empty(first_child.size - 1, np.int64),
-        np.empty(first_child.size - 1, np.int64),
-    )
+    n_rows = first_child.size - 1
+    order, roots = np.empty(n_rows, np.int64), np.empty(n_rows, np.int64)
     n_ordered = primaries.size
     order[:n_ordered], roots[:n_ordered] = primaries, primaries
     row = 0

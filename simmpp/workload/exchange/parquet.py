@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 from pyarrow import parquet
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import LONGEST_WORD, MOST_ROWS, Column, Table, Tables
+from simmpp.workload.exchange.columns import LONGEST_WORD, MOST_ROWS, CheckedTable, Column, Content
 
 NULL_MEANS_NONE = ("parent", "hit")
 """Columns in which a missing value is the same as -1."""
@@ -23,7 +23,7 @@ def objects_path(path: Path) -> Path:
     return path.with_suffix(f".objects{path.suffix}")
 
 
-def read(path: Path) -> Tables:
+def read(path: Path) -> Content:
     """Both tables; raises WorkloadError, or OSError and ValueError for what is no Parquet."""
     try:
         return _tables(path)
@@ -31,7 +31,7 @@ def read(path: Path) -> Tables:
         raise ValueError(str(error)) from None
 
 
-def _tables(path: Path) -> Tables:
+def _tables(path: Path) -> Content:
     beside = objects_path(path)
     if not beside.is_file():
         expected = f"expected the table of objects beside it, {beside.name}"
@@ -40,10 +40,10 @@ def _tables(path: Path) -> Tables:
     objects, _ = _table(beside)
     text = metadata.get(PICTURE)
     picture = None if text is None else np.array([int(word) for word in text.split()])
-    return Tables(rays, objects, picture)
+    return Content(rays, objects, picture)
 
 
-def write(tables: Tables, path: Path) -> None:
+def write(tables: Content, path: Path) -> None:
     """Write both tables; words as dictionaries, itineraries as lists."""
     columns = dict(tables.rays.columns)
     offsets, objects = columns.pop("itinerary_offsets"), columns.pop("itinerary_objects")
@@ -54,12 +54,12 @@ def write(tables: Tables, path: Path) -> None:
     parquet.write_table(rays, path)
 
 
-def _table(path: Path) -> tuple[Table, dict[bytes, bytes]]:
+def _table(path: Path) -> tuple[CheckedTable, dict[bytes, bytes]]:
     with parquet.ParquetFile(path) as file:
         rows, names = file.metadata.num_rows, file.schema_arrow.names
         if rows > MOST_ROWS:
             raise WorkloadError(f"{rows} rows: expected at most {MOST_ROWS}", where=str(path))
-        table = Table(str(path), "", rows, {})
+        table = CheckedTable(str(path), "", rows, {})
         for name in names:
             if names.count(name) > 1:
                 table.fail(name, "two columns have this name")
@@ -73,7 +73,7 @@ def _table(path: Path) -> tuple[Table, dict[bytes, bytes]]:
         return table, dict(file.schema_arrow.metadata or {})
 
 
-def _column(table: Table, name: str, array: pa.Array) -> Column:
+def _column(table: CheckedTable, name: str, array: pa.Array) -> Column:
     if pa.types.is_dictionary(array.type):
         array = array.dictionary_decode()
     if name in NULL_MEANS_NONE and array.null_count and pa.types.is_integer(array.type):
@@ -87,13 +87,13 @@ def _column(table: Table, name: str, array: pa.Array) -> Column:
     return array.to_numpy(zero_copy_only=False)
 
 
-def _refuse_nulls(table: Table, name: str, array: pa.Array) -> None:
+def _refuse_nulls(table: CheckedTable, name: str, array: pa.Array) -> None:
     if array.null_count:
         row = int(np.argmax(array.is_null().to_numpy(zero_copy_only=False)))
         table.fail(name, "the value is missing (null)", row)
 
 
-def _itineraries(table: Table, array: pa.Array) -> dict[str, Column]:
+def _itineraries(table: CheckedTable, array: pa.Array) -> dict[str, Column]:
     kind = array.type
     if not pa.types.is_list(kind) and not pa.types.is_large_list(kind):
         table.fail("itinerary", f"it holds {kind}, expected lists of integers")

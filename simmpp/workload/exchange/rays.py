@@ -7,17 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.exchange.columns import Table
+from simmpp.workload.exchange.columns import ITINERARY, CheckedTable
 from simmpp.workload.exchange.numbering import by_generation, first_repeat, regrouped, row_in_cycle
 from simmpp.workload.workload import PRIMARY, RAY_KINDS, REFLECTED, SHADOW
 
-ITINERARY = ("itinerary_offsets", "itinerary_objects")
 RAY_COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
 
 Ints = NDArray[np.int64]
 
 
-def rays_of(table: Table, n_objects: int) -> dict[str, NDArray[Any]]:
+def rays_of(table: CheckedTable, n_objects: int) -> dict[str, NDArray[Any]]:
     """The fields of a workload that hold rays; raises WorkloadError for what makes no sense."""
     table.known((*RAY_COLUMNS, *ITINERARY), required=ITINERARY)
     n = table.rows
@@ -46,7 +45,7 @@ def rays_of(table: Table, n_objects: int) -> dict[str, NDArray[Any]]:
     }
 
 
-def _check_kinds(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> None:
+def _check_kinds(table: CheckedTable, parents: Ints, kinds: NDArray[np.uint8]) -> None:
     if (parents >= 0).all():
         table.fail("parent", "there is no primary ray: expected -1 in at least one row")
     wrong = np.flatnonzero((kinds == PRIMARY) != (parents < 0))
@@ -54,15 +53,11 @@ def _check_kinds(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> None:
         row = int(wrong[0])
         has = f"has parent {parents[row]}" if parents[row] >= 0 else "has no parent"
         table.fail("kind", f"a {RAY_KINDS[kinds[row]]} ray {has}", row)
-    spawned = np.flatnonzero(parents >= 0)
-    wrong = spawned[kinds[parents[spawned]] == SHADOW]
-    if len(wrong):
-        row = int(wrong[0])
-        problem = f"value {parents[row]}: expected no shadow ray, which spawns nothing"
-        table.fail("parent", problem, row)
+    fertile = (parents < 0) | (kinds[parents] != SHADOW)
+    table.require(fertile, "parent", "no shadow ray, which spawns nothing")
 
 
-def _itineraries(table: Table, n_objects: int) -> tuple[Ints, Ints]:
+def _itineraries(table: CheckedTable, n_objects: int) -> tuple[Ints, Ints]:
     """Offsets and objects, once they are found to fit the rays and the objects."""
     offsets, objects = (table.columns[name] for name in ITINERARY)
     for column in (offsets, objects):
@@ -84,7 +79,9 @@ def _itineraries(table: Table, n_objects: int) -> tuple[Ints, Ints]:
     return offsets, objects
 
 
-def _hits(table: Table, offsets: Ints, objects: Ints, n_children: Ints, n_objects: int) -> Ints:
+def _hits(
+    table: CheckedTable, offsets: Ints, objects: Ints, n_children: Ints, n_objects: int
+) -> Ints:
     """The object hit by each ray, -1 for none: (n,) int64."""
     spawners, empty = n_children > 0, np.diff(offsets) == 0
     wrong = spawners & empty
@@ -105,25 +102,23 @@ def _hits(table: Table, offsets: Ints, objects: Ints, n_children: Ints, n_object
     return hits
 
 
-def _distances(table: Table, hits: Ints) -> NDArray[np.float64]:
+def _distances(table: CheckedTable, hits: Ints) -> NDArray[np.float64]:
     distances = table.numbers("distance", where=hits >= 0)
-    if "distance" in table.columns:
-        table.require((distances >= 0) | (hits < 0), "distance", "a distance of at least 0")
+    table.require((distances >= 0) | (hits < 0), "distance", "a distance of at least 0")
     return distances
 
 
-def _numbered(table: Table, parents: Ints, kinds: NDArray[np.uint8]) -> tuple[Ints, Ints]:
+def _numbered(table: CheckedTable, parents: Ints, kinds: NDArray[np.uint8]) -> tuple[Ints, Ints]:
     """Rows in their new order, and the row of each one's primary ray."""
     pixels = table.integers("pixel", -1, 2**62, -1, "a place in the picture, or -1")
-    has_pixels = "pixel" in table.columns
-    if has_pixels:
+    if "pixel" in table.columns:
         table.require((pixels >= 0) | (parents >= 0), "pixel", "a primary ray's place from 0")
     order, roots = by_generation(parents, kinds, pixels)
     if len(order) < table.rows:
         row = row_in_cycle(parents, order)
         table.fail("parent", f"value {parents[row]}: the ray is its own ancestor", row)
     wrong = np.flatnonzero((pixels[order] != pixels[roots]) & (pixels[order] >= 0))
-    if has_pixels and len(wrong):
+    if len(wrong):
         row = int(order[wrong].min())
         table.fail("pixel", f"value {pixels[row]}: its primary ray has another", row)
     return order, roots

@@ -31,7 +31,7 @@ class Tree(NamedTuple):
     """(nodes, 8) int32: a node, or ~leaf, or EMPTY."""
 
 
-class Memory(NamedTuple):
+class Scratch(NamedTuple):
     """What building a tree writes to."""
 
     order: Ints
@@ -58,7 +58,7 @@ def build(boxes: Floats) -> Tree:
     Equal boxes give equal trees.
     """
     n = len(boxes)
-    memory = Memory(
+    memory = Scratch(
         order=np.arange(n, dtype=np.int32),
         moving=np.empty(n, np.int32),
         cuts=np.empty(WIDTH + 1, np.int64),
@@ -73,18 +73,19 @@ def build(boxes: Floats) -> Tree:
     children = np.full((max(n, 1), WIDTH), EMPTY, np.int32)
     spans = np.empty((max(n, 1), 2), np.int64)
     spans[0] = 0, n
-    used = _build(boxes, memory, bounds, children, spans)
-    return Tree(bounds[:used].copy(), children[:used].copy())
+    n_nodes = _build(boxes, memory, bounds, children, spans)
+    # A node of eight takes the place of seven splits, so most of the room was never used.
+    return Tree(bounds[:n_nodes].copy(), children[:n_nodes].copy())
 
 
 @njit
 def _build(
-    boxes: Floats, memory: Memory, bounds: Floats, children: Ints, spans: NDArray[np.int64]
+    boxes: Floats, memory: Scratch, bounds: Floats, children: Ints, spans: NDArray[np.int64]
 ) -> int:
     """Fill the arrays of a tree; how many nodes it has."""
-    used = 1
+    n_nodes = 1
     node = 0
-    while node < used:  # spans is the queue: children are numbered after their parents
+    while node < n_nodes:  # spans is the queue: children are numbered after their parents
         n = _cut_in_eight(boxes, memory, spans[node, 0], spans[node, 1])
         for k in range(n):
             low, high = memory.cuts[k], memory.cuts[k + 1]
@@ -94,15 +95,15 @@ def _build(
             if high - low == 1:
                 children[node, k] = ~memory.order[low]
             else:
-                children[node, k] = used
-                spans[used, 0], spans[used, 1] = low, high
-                used += 1
+                children[node, k] = n_nodes
+                spans[n_nodes, 0], spans[n_nodes, 1] = low, high
+                n_nodes += 1
         node += 1
-    return used
+    return n_nodes
 
 
 @kernel
-def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
+def _cut_in_eight(boxes: Floats, memory: Scratch, low: int, high: int) -> int:
     """Cut order[low:high] into at most eight segments; how many there are."""
     cuts, costs = memory.cuts, memory.costs
     cuts[0], cuts[1] = low, high
@@ -111,10 +112,10 @@ def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
     while 0 < n < WIDTH:
         worst = 0
         for k in range(1, n):
-            if costs[k] > costs[worst]:
+            if costs[k] > costs[worst]:  # of equal ones the first: equal boxes, equal trees
                 worst = k
         first, last = cuts[worst], cuts[worst + 1]
-        if costs[worst] < 0.0:
+        if costs[worst] < 0.0:  # all segments are single boxes
             break
         middle = _split(boxes, memory, first, last)
         for k in range(n, worst, -1):
@@ -128,7 +129,7 @@ def _cut_in_eight(boxes: Floats, memory: Memory, low: int, high: int) -> int:
 
 
 @kernel
-def _cost(boxes: Floats, memory: Memory, low: int, high: int) -> float:
+def _cost(boxes: Floats, memory: Scratch, low: int, high: int) -> float:
     """Surface times number of boxes; -1 for a single one, which is never split."""
     if high - low < 2:
         return -1.0
@@ -137,7 +138,7 @@ def _cost(boxes: Floats, memory: Memory, low: int, high: int) -> float:
 
 
 @kernel
-def _unite(boxes: Floats, memory: Memory, low: int, high: int) -> None:
+def _unite(boxes: Floats, memory: Scratch, low: int, high: int) -> None:
     """Make memory.box the box of order[low:high]."""
     _clear(memory.box)
     for i in range(low, high):
@@ -166,14 +167,16 @@ def _area(box: Floats) -> float:
 
 
 @kernel
-def _split(boxes: Floats, memory: Memory, low: int, high: int) -> int:
+def _split(boxes: Floats, memory: Scratch, low: int, high: int) -> int:
     """Reorder order[low:high] about the cheapest plane between bins; its position."""
     axis, start, extent = _longest_axis(boxes, memory.order, low, high)
     middle = low
+    # A little less than BINS, so that the greatest centre is in the last bin and not behind it.
     per_bin = BINS * (1.0 - 2.0**-40) / extent
     if 0.0 < per_bin < np.inf:  # centres that are one, or a subnormal number apart, have no bins
         plane = _cheapest_plane(boxes, memory, low, high, axis, start, per_bin)
         middle = _partition(boxes, memory, low, high, axis, start, per_bin, plane)
+    # A half where there are no bins, as for boxes that are one and the same: it has to end.
     return middle if low < middle < high else (low + high) // 2
 
 
@@ -184,6 +187,7 @@ def _longest_axis(boxes: Floats, order: Ints, low: int, high: int) -> tuple[int,
     for axis in range(3):
         least, most = np.inf, -np.inf
         for i in range(low, high):
+            # The sum of the corners: no halving, and a subnormal number is not rounded to 0.
             centre = boxes[order[i], axis] + boxes[order[i], 3 + axis]
             least, most = min(least, centre), max(most, centre)
         if most - least > extent:
@@ -198,7 +202,7 @@ def _bin(boxes: Floats, i: int, axis: int, start: float, per_bin: float) -> int:
 
 @kernel
 def _cheapest_plane(
-    boxes: Floats, memory: Memory, low: int, high: int, axis: int, start: float, per_bin: float
+    boxes: Floats, memory: Scratch, low: int, high: int, axis: int, start: float, per_bin: float
 ) -> int:
     """The first bin of the upper part, by the least sum of surface times number."""
     bins, counts, planes, below = memory.bins, memory.counts, memory.planes, memory.box
@@ -210,6 +214,7 @@ def _cheapest_plane(
         k = _bin(boxes, i, axis, start, per_bin)
         counts[k] += 1
         _extend(bins[k], boxes[i])
+    # Two passes, from below and from above: each adds its side's share to every plane's cost.
     for sign in (1, -1):
         _clear(below)
         n = 0
@@ -228,7 +233,7 @@ def _cheapest_plane(
 @kernel
 def _partition(
     boxes: Floats,
-    memory: Memory,
+    memory: Scratch,
     low: int,
     high: int,
     axis: int,
@@ -255,5 +260,6 @@ def _partition(
 def shifted(tree: Tree, *, nodes: int, leaves: int) -> Tree:
     """The same tree with ``nodes`` and ``leaves`` added to its numbers."""
     old = tree.children
+    # ~(leaf + leaves) is ~leaf - leaves.
     children = np.where(old >= 0, old + nodes, np.where(old == EMPTY, EMPTY, old - leaves))
     return Tree(tree.bounds, children.astype(np.int32))

@@ -15,8 +15,6 @@ from simmpp.workload.trace.exact import entry, ray_of
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.proxies import proxy_mesh
 
-BATCH = 65536
-"""Rays of one call: from 256 on embree runs at its peak, and this bounds the copies."""
 AWAY = 2.0**-16
 """How far rays start from the surface they leave, in scene sizes: past float32's roundings."""
 
@@ -27,6 +25,7 @@ class Intersector:
     def __init__(self, geometry: Geometry) -> None:
         corners, self._stands_for = proxy_mesh(geometry)
         self._box = geometry.box.reshape(1, 6)
+        # embree fails on a scene without triangles. "Robust" closes the edges between them.
         self._scene = EmbreeScene(robust=True) if len(corners) else None
         if self._scene is not None:
             TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))
@@ -43,15 +42,11 @@ class Intersector:
         if origins.shape != directions.shape or origins.shape[1:] != (3,):
             raise ValueError(f"rays of shapes {origins.shape} and {directions.shape}, not (n, 3)")
         claims = np.full((len(origins), 2), -1, dtype=np.int32)
-        if self._scene is None:
-            return claims
-        for start in range(0, len(origins), BATCH):
-            part = slice(start, start + BATCH)
-            which, starts, ahead = _starts_in_box(self._box, origins[part], directions[part])
-            if len(which):
-                first = self._scene.run(starts, ahead, query="INTERSECT")
-                hit = (first >= 0) & (first < len(self._stands_for))
-                claims[start + which[hit]] = self._stands_for[first[hit]]
+        which, starts, ahead = _starts_in_box(self._box, origins, directions)
+        if self._scene is not None and len(which):
+            first = self._scene.run(starts, ahead, query="INTERSECT")
+            hit = (first >= 0) & (first < len(self._stands_for))
+            claims[which[hit]] = self._stands_for[first[hit]]
         return claims
 
 
@@ -61,6 +56,7 @@ def _starts_in_box(
     """Rays that enter the scene's box, as float32, moved to where they enter it."""
     which = np.empty(len(origins), np.int64)
     starts, ahead = np.empty((2, len(origins), 3), np.float32)
+    # A part of an array would be another type, and compiled once more.
     contiguous = np.ascontiguousarray(origins), np.ascontiguousarray(directions)
     n = _start_in_box(box, *contiguous, which, starts, ahead)
     return which[:n], starts[:n], ahead[:n]
@@ -80,6 +76,8 @@ def _start_in_box(
     for i in range(len(origins)):
         t = entry(box, 0, ray_of(origins, directions, i))
         if t < np.inf:
+            # From within it starts ahead of its surface, which float32 would find again; from
+            # outside before the box, whose face may be the very object that is to be found.
             t += AWAY if t == 0.0 else -AWAY
             for axis in range(3):
                 origins32[n, axis] = origins[i, axis] + t * directions[i, axis]

@@ -67,6 +67,7 @@ def frame_of(scene: Scene) -> Frame:
     origin = points.min(axis=0)
     with np.errstate(over="ignore"):
         extent = float(((points - origin + radii).max(0) - (points - origin - radii).min(0)).max())
+    # A power of two changes exponents only, so distances go back to scene units without an error.
     _, exponent = math.frexp(extent)
     if not (math.isfinite(extent) and abs(exponent) <= EXPONENT_LIMIT):
         limits = f"expected 0, or from {2.0**-EXPONENT_LIMIT:.0e} to {2.0**EXPONENT_LIMIT:.0e}"

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,39 +22,13 @@ from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.frame import Frame
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
-from simmpp.workload.trace.surface import (
-    Surface,
-    faces,
-    reflected,
-    refracted,
-    surface_at,
-    towards,
-)
+from simmpp.workload.trace.ray_batch import RayBatch, unwritten
+from simmpp.workload.trace.surface import Surface, faces, reflected, refracted, surface_at
+from simmpp.workload.trace.vectors import dot, minus, normalised, vector
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-
-
-class Rays(NamedTuple):
-    """n rays of one generation, lengths normalised."""
-
-    origins: Floats
-    """(n, 3) float64."""
-    directions: Floats
-    """(n, 3) float64 of length 1."""
-    kinds: NDArray[np.uint8]
-    """(n,) uint8."""
-    limits: Floats
-    """(n,) float64: distance to the light of a shadow ray, else infinity."""
-    sources: NDArray[np.int32]
-    """(n,) int32: the object that the ray leaves for good, convex and opaque; else -1."""
-    parents: NDArray[np.int32]
-    """(n,) int32: number of the parent; -1 for primary rays."""
-
-    def part(self, start: int, stop: int) -> Rays:
-        """Rays start ... stop - 1."""
-        return Rays._make(array[start:stop] for array in self)
 
 
 @dataclass(frozen=True)
@@ -85,12 +58,12 @@ def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
     )
 
 
-def first_generation(scene: Scene, picture: Picture, frame: Frame) -> Rays:
+def first_generation(scene: Scene, picture: Picture, frame: Frame) -> RayBatch:
     """The primary rays."""
     eye, directions = primary_rays(scene.camera, picture, frame)
     n = len(directions)
-    return Rays(
-        origins=np.broadcast_to(eye, (n, 3)).copy(),
+    return RayBatch(
+        origins=np.broadcast_to(eye, (n, 3)).copy(),  # a view would be compiled as another type
         directions=directions,
         kinds=np.full(n, PRIMARY, dtype=np.uint8),
         limits=np.full(n, np.inf),
@@ -101,13 +74,13 @@ def first_generation(scene: Scene, picture: Picture, frame: Frame) -> Rays:
 
 def children(
     geometry: Geometry,
-    rays: Rays,
+    rays: RayBatch,
     hits: NDArray[np.int32],
     distances: Floats,
     rules: Spawning,
     depth: int,
     first: int,
-) -> tuple[Rays, NDArray[np.int32]]:
+) -> tuple[RayBatch, NDArray[np.int32]]:
     """Rays spawned by the hits of ``rays``, and how many each has, (n,) int32.
 
     ``distances`` are normalised. The rays are of ``depth``, the first has number ``first``. Rays
@@ -116,41 +89,26 @@ def children(
     deeper = depth < rules.max_depth
     reflection, refraction = rules.reflection and deeper, rules.refraction and deeper
     surfaces = hits[(rays.kinds != SHADOW) & (hits >= 0)]
+    # As many as there can be, since room has to be made before it is known which lights are faced.
     most = len(rules.lights) * len(surfaces)
     most += reflection * int(geometry.reflects[surfaces].sum())
     most += refraction * int(geometry.transmits[surfaces].sum())
-    new, counts = _room(most), np.zeros(len(hits), np.int32)
+    new, counts = unwritten(most), np.zeros(len(hits), np.int32)
     spawning = rules.lights, reflection, refraction
     work = work_for(geometry.shapes)
     used = _spawn(geometry, rays, hits, distances, spawning, first, new, counts, work)
     return new.part(0, used), counts
 
 
-def _room(n: int) -> Rays:
-    return Rays(
-        origins=np.empty((n, 3)),
-        directions=np.empty((n, 3)),
-        kinds=np.empty(n, np.uint8),
-        limits=np.empty(n),
-        sources=np.empty(n, np.int32),
-        parents=np.empty(n, np.int32),
-    )
-
-
-def joined(parts: list[Rays]) -> Rays:
-    """Runs of rays, one after the other."""
-    return Rays._make(np.concatenate(column) for column in zip(*parts, strict=True))
-
-
 @njit
 def _spawn(
     geometry: Geometry,
-    rays: Rays,
+    rays: RayBatch,
     hits: Ints,
     distances: Floats,
     spawning: tuple[Floats, bool, bool],
     first: int,
-    new: Rays,
+    new: RayBatch,
     counts: Ints,
     work: Work,
 ) -> int:
@@ -167,6 +125,7 @@ def _spawn(
         surface = surface_at(
             geometry.shapes, geometry.normals, hit, ray, distances[i], opaque, work
         )
+        # In this order siblings are numbered; shading counts on shadow rays to be the last.
         if reflection and reflects[hit]:
             used = _add(
                 new, used, REFLECTED, first + i, hit, surface, reflected(ray, surface), np.inf
@@ -176,15 +135,14 @@ def _spawn(
             if passes:
                 used = _add(new, used, REFRACTED, first + i, hit, surface, direction, np.inf)
         for k in range(len(lights)):
-            light = (lights[k, 0], lights[k, 1], lights[k, 2])
-            used = _add_shadow(new, used, first + i, hit, surface, light)
+            used = _add_shadow(new, used, first + i, hit, surface, vector(lights, k))
         counts[i] = used - before
     return used
 
 
 @kernel
 def _add(
-    new: Rays,
+    new: RayBatch,
     used: int,
     kind: int,
     parent: int,
@@ -195,23 +153,23 @@ def _add(
 ) -> int:
     """Append one ray that leaves ``surface``; the new number of rays."""
     origin, ahead = new.origins[used], new.directions[used]
-    x, y, z = direction
-    outwards = surface.ox * x + surface.oy * y + surface.oz * z > 0.0
-    origin[0], origin[1], origin[2] = surface.x, surface.y, surface.z
-    ahead[0], ahead[1], ahead[2] = x, y, z
+    outwards = dot(surface.outside, direction) > 0.0
+    origin[0], origin[1], origin[2] = surface.point
+    ahead[0], ahead[1], ahead[2] = direction
     new.kinds[used], new.limits[used], new.parents[used] = kind, limit, parent
+    # Without this a ray could hit the surface it leaves: its origin is rounded to before or behind.
+    # Glass and meshes may be hit again; there T_MIN has to keep the two apart.
     new.sources[used] = source if surface.flat or (surface.convex and outwards) else -1
     return used + 1
 
 
 @kernel
 def _add_shadow(
-    new: Rays, used: int, parent: int, source: int, surface: Surface, light: Vector
+    new: RayBatch, used: int, parent: int, source: int, surface: Surface, light: Vector
 ) -> int:
     """Append a shadow ray, unless the surface faces away from the light."""
-    x, y, z = towards(surface, light[0], light[1], light[2])
-    if not faces(surface, x, y, z):
+    to_light = minus(light, surface.point)
+    if not faces(surface, to_light):
         return used
-    distance = math.sqrt(x * x + y * y + z * z)
-    direction = (x / distance, y / distance, z / distance)
-    return _add(new, used, SHADOW, parent, source, surface, direction, distance)
+    distance = math.sqrt(dot(to_light, to_light))
+    return _add(new, used, SHADOW, parent, source, surface, normalised(to_light), distance)

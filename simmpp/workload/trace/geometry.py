@@ -11,7 +11,7 @@ from simmpp.scene.scene import Cone, MeshPart, Polygon, Scene, SceneObject, Sphe
 from simmpp.scene.triangles import triangles
 from simmpp.workload.trace import bvh
 from simmpp.workload.trace.frame import Frame
-from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
+from simmpp.workload.workload import CONE, OBJECT_KINDS, POLYGON, SPHERE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -74,21 +74,20 @@ class Geometry(NamedTuple):
 def flatten(scene: Scene, frame: Frame) -> Geometry:
     """The arrays of ``scene`` in ``frame``."""
     things = scene.objects
-    kinds = np.array([_kind(thing) for thing in things], dtype=np.int32)
+    kinds = np.array([OBJECT_KINDS.index(thing.kind) for thing in things], dtype=np.int32)
     surfaces, counts = _surfaces(things, frame)
     after = np.cumsum(counts, dtype=np.int32)
-    boxes = padded(_boxes(kinds, after - counts, surfaces))
-    box = np.concatenate(
-        [boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)]
-    )
-    roots, tree = _trees(boxes, after - counts, counts, surfaces)
-    objects = np.stack([kinds, np.where(roots < 0, after - counts, after), after, roots], axis=1)
+    first = after - counts
+    boxes = padded(_boxes(kinds, first, surfaces))
+    box = np.hstack([boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)])
+    roots, tree = _trees(boxes, first, counts, surfaces)
+    objects = np.stack([kinds, np.where(roots < 0, first, after), after, roots], axis=1)
     materials = [scene.materials[thing.material] for thing in things]
     return Geometry(
         shapes=Shapes(objects.astype(np.int32), surfaces, *tree, T_MIN * diagonal(box)),
         boxes=boxes,
         box=box,
-        normals=_normals(kinds, after - counts, surfaces),
+        normals=_normals(kinds, first, surfaces),
         n_triangles=np.where(kinds >= POLYGON, counts, 0).astype(np.int32),
         reflects=np.array([material.reflects for material in materials], dtype=np.bool_),
         transmits=np.array([material.transmits for material in materials], dtype=np.bool_),
@@ -99,6 +98,8 @@ def flatten(scene: Scene, frame: Frame) -> Geometry:
 def padded(boxes: Floats) -> Floats:
     """Boxes (n, 6) float64 grown by PADDING."""
     low, high = boxes[:, :3], boxes[:, 3:]
+    # Slab tests subtract the origin from a bound, so they round by a share of where the box lies,
+    # and intersections by a share of how large its object is: either may be the larger.
     reach = np.abs(boxes).max(axis=1, initial=0.0)
     grow = PADDING * (np.sqrt(((high - low) ** 2).sum(axis=1)) + reach)[:, None]
     return np.hstack([low - grow, high + grow])
@@ -109,14 +110,6 @@ def diagonal(box: Floats) -> float:
     if box[0] > box[3]:
         return 0.0
     return float(np.sqrt(((box[3:] - box[:3]) ** 2).sum()))
-
-
-def _kind(thing: SceneObject) -> int:
-    if isinstance(thing, Sphere):
-        return SPHERE
-    if isinstance(thing, Cone):
-        return CONE
-    return POLYGON if isinstance(thing, Polygon) else MESH
 
 
 def _surfaces(things: tuple[SceneObject, ...], frame: Frame) -> tuple[Floats, Ints]:
@@ -147,6 +140,7 @@ def _cone(cone: Cone, frame: Frame) -> Floats:
     base, apex = frame.points(np.array([cone.base, cone.apex]))
     height = float(np.sqrt(((apex - base) ** 2).sum()))
     radius, apex_radius = abs(cone.base_radius) * frame.scale, abs(cone.apex_radius) * frame.scale
+    # Two points apart in the scene may be one here, where both have lost their last digits.
     if height == 0.0 or max(radius, apex_radius) == 0.0:
         return np.array([*base, 0.0, 0.0, 1.0, 0.0, radius, 0.0])
     axis, growth = (apex - base) / height, (apex_radius - radius) / height
@@ -157,6 +151,7 @@ def _with_edges(corners: Floats) -> Floats:
     edges = corners[:, 1:] - corners[:, :1]
     area = np.cross(edges[:, 0], edges[:, 1])
     lengths = np.sqrt((edges**2).sum(axis=2)).prod(axis=1)
+    # Edges of 0 make a determinant of 0: never hit, whatever direction roundings gave the sliver.
     edges[np.sqrt((area**2).sum(axis=1)) <= SLIVER * lengths] = 0.0
     return np.concatenate([corners[:, 0], edges[:, 0], edges[:, 1]], axis=1)
 
@@ -164,11 +159,12 @@ def _with_edges(corners: Floats) -> Floats:
 def _normals(kinds: Ints, first: Ints, surfaces: Floats) -> Floats:
     """Unit normals (N, 3) of polygons: sums of area vectors, right even at a concave corner."""
     normals = np.zeros((len(kinds), 3))
-    if len(kinds):
+    if len(kinds):  # reduceat refuses an index into nothing
+        # Rows of spheres and cones give areas without a meaning, of which none is taken.
         areas = np.add.reduceat(np.cross(surfaces[:, 3:6], surfaces[:, 6:]), first)
         normals[kinds == POLYGON] = areas[kinds == POLYGON]
     lengths = np.sqrt((normals**2).sum(axis=1, keepdims=True))
-    return normals / np.where(lengths > 0, lengths, 1.0)
+    return normals / np.where(lengths > 0, lengths, 1.0)  # without area it is never hit
 
 
 def _boxes(kinds: Ints, first: Ints, surfaces: Floats) -> Floats:
@@ -178,17 +174,23 @@ def _boxes(kinds: Ints, first: Ints, surfaces: Floats) -> Floats:
     centre, radius = np.split(surfaces[first[spheres], :4], (3,), axis=1)
     boxes[spheres] = np.hstack([centre - radius, centre + radius])
     boxes[cones] = _cone_boxes(surfaces[first[cones]])
-    if flat.any():
+    if flat.any():  # as for normals, all rows are taken as triangles, and round ones dropped
         low, high = np.split(_triangle_boxes(surfaces), 2, axis=1)
         boxes[flat, :3] = np.minimum.reduceat(low, first)[flat]
         boxes[flat, 3:] = np.maximum.reduceat(high, first)[flat]
     return boxes
 
 
-def _triangle_boxes(rows: Floats) -> Floats:
-    """Boxes (n, 6) of triangles, from the vertices as intersections see them."""
+def corners_of(rows: Floats) -> Floats:
+    """Corners (n, 3, 3) of triangles (n, 9), as intersections see them."""
+    # Not those of the scene: vertex + (corner - vertex) may be rounded to another number.
     vertex, e1, e2 = np.split(rows, 3, axis=1)
-    corners = np.stack([vertex, vertex + e1, vertex + e2], axis=1)
+    return np.stack([vertex, vertex + e1, vertex + e2], axis=1)
+
+
+def _triangle_boxes(rows: Floats) -> Floats:
+    """Boxes (n, 6) of triangles (n, 9)."""
+    corners = corners_of(rows)
     return np.hstack([corners.min(axis=1), corners.max(axis=1)])
 
 
@@ -209,11 +211,12 @@ def _trees(boxes: Floats, first: Ints, counts: Ints, surfaces: Floats) -> tuple[
     """Roots (N,) int32 of objects of many triangles, and all nodes, the objects' tree first."""
     roots = np.full(len(first), -1, dtype=np.int32)
     trees = [bvh.build(boxes)]
-    used = len(trees[0].children)
+    n_nodes = len(trees[0].children)
     for i in np.flatnonzero(counts > FEW_TRIANGLES):
         part = surfaces[first[i] : first[i] + counts[i]]
         tree = bvh.build(padded(_triangle_boxes(part)))
-        trees.append(bvh.shifted(tree, nodes=used, leaves=int(first[i])))
-        roots[i] = used
-        used += len(tree.children)
+        # One array for all trees: a compiled call pays for each array that it is given.
+        trees.append(bvh.shifted(tree, nodes=n_nodes, leaves=int(first[i])))
+        roots[i] = n_nodes
+        n_nodes += len(tree.children)
     return roots, bvh.Tree(*(np.concatenate(arrays) for arrays in zip(*trees, strict=True)))

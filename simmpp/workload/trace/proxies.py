@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.trace.geometry import Geometry
+from simmpp.workload.trace.geometry import Geometry, corners_of
 from simmpp.workload.workload import CONE, SPHERE
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ def proxy_mesh(geometry: Geometry) -> tuple[Floats, NDArray[np.int32]]:
     row_counts = np.maximum(geometry.n_triangles, 1)
     flat_rows = np.flatnonzero(np.repeat(geometry.n_triangles > 0, row_counts))
     first = np.cumsum(row_counts) - row_counts
-    corners = [_corners(rows[flat_rows])]
+    corners = [corners_of(rows[flat_rows])]
     corners += [_in_spheres(rows[first[spheres]]), _in_cones(rows[first[cones]])]
     owners = [np.repeat(np.arange(len(row_counts)), geometry.n_triangles)]
     owners += [np.repeat(spheres, len(ICOSAHEDRON)), np.repeat(cones, 2 * SIDES)]
@@ -44,17 +44,11 @@ def proxy_mesh(geometry: Geometry) -> tuple[Floats, NDArray[np.int32]]:
     return np.concatenate(corners), stands_for
 
 
-def _corners(rows: Floats) -> Floats:
-    vertex, e1, e2 = np.split(rows, 3, axis=1)
-    return np.stack([vertex, vertex + e1, vertex + e2], axis=1)
-
-
 def _icosahedron() -> Floats:
     """(20, 3, 3) float64 inscribed in the unit sphere: faces of mutually nearest vertices."""
     golden = (1 + math.sqrt(5)) / 2
     signs = [(s, t * golden) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
-    points = [np.roll((0.0, s, t), axis) for axis in range(3) for s, t in signs]
-    vertices = np.array(points)
+    vertices = np.array([np.roll((0.0, s, t), axis) for axis in range(3) for s, t in signs])
     near = np.abs(((vertices[:, None] - vertices[None]) ** 2).sum(axis=2) - 4.0) < 1e-9
     faces = [
         (i, j, k)
@@ -78,6 +72,7 @@ def _in_spheres(shapes: Floats) -> Floats:
 def _in_cones(shapes: Floats) -> Floats:
     """Open prisms; around each axis from two directions across it."""
     base, axis, height, radius, growth = np.split(shapes, (3, 6, 7, 8), axis=1)
+    # Any vector across will do, if the cross product with the axis is not small.
     aside = np.where(np.abs(axis[:, :1]) < 0.5, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     right = np.cross(axis, aside)
     right /= np.sqrt((right**2).sum(axis=1, keepdims=True))

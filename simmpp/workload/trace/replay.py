@@ -10,8 +10,9 @@ from simmpp.scene.scene import Scene
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.frame import Frame, frame_of
-from simmpp.workload.trace.generations import Rays, children, first_generation, spawning
+from simmpp.workload.trace.generations import children, first_generation, spawning
 from simmpp.workload.trace.geometry import Geometry, flatten
+from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.workload import Workload
 
 
@@ -47,7 +48,7 @@ def traced(scene: Scene, picture: Picture, workload: Workload) -> Traced:
     return Traced(scene, picture, workload, frame, flatten(scene, frame))
 
 
-def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
+def recorded_generations(traced: Traced) -> Iterator[tuple[int, RayBatch]]:
     """The number of the first ray, and the rays, of each depth, from the recorded hits.
 
     Raises
@@ -63,6 +64,7 @@ def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
         _compare(rays, start, workload)
         yield start, rays
         distances = workload.hit_distances[start:stop] * frame.scale
+        # Copies of the workload's pages, which are read-only: another type to compiled code.
         rays, _ = children(
             geometry, rays, workload.hits[start:stop].copy(), distances, rules, depth, start
         )
@@ -71,14 +73,14 @@ def generations(traced: Traced) -> Iterator[tuple[int, Rays]]:
         raise SpawnError(int(workload.parents[start]), workload.name)
 
 
-def _compare(rays: Rays, start: int, workload: Workload) -> None:
+def _compare(rays: RayBatch, start: int, workload: Workload) -> None:
     """Raise SpawnError for the first ray whose children are not the recorded ones."""
     recorded = slice(start, start + len(rays.kinds))
     kinds, parents = workload.kinds[recorded], workload.parents[recorded]
-    known = len(kinds)
-    same = (kinds == rays.kinds[:known]) & (parents == rays.parents[:known])
+    n_recorded = len(kinds)
+    same = (kinds == rays.kinds[:n_recorded]) & (parents == rays.parents[:n_recorded])
     if not same.all():
         first = int(same.argmin())
         raise SpawnError(max(0, min(int(parents[first]), int(rays.parents[first]))), workload.name)
-    if known < len(rays.kinds):
-        raise SpawnError(max(0, int(rays.parents[known])), workload.name)
+    if n_recorded < len(rays.kinds):
+        raise SpawnError(max(0, int(rays.parents[n_recorded])), workload.name)

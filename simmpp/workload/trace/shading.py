@@ -14,11 +14,12 @@ from simmpp.common.compiled import kernel, njit
 from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import ray_of
-from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
-from simmpp.workload.trace.replay import Traced, generations, traced
-from simmpp.workload.trace.surface import Surface, faces, normalised, reflected, surface_at, towards
+from simmpp.workload.trace.ray_batch import RayBatch
+from simmpp.workload.trace.replay import Traced, recorded_generations, traced
+from simmpp.workload.trace.surface import Surface, faces, reflected, surface_at
+from simmpp.workload.trace.vectors import dot, minus, normalised, vector
 from simmpp.workload.workload import REFLECTED, SHADOW, Workload
 
 Floats = NDArray[np.float64]
@@ -68,7 +69,7 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
     colours = np.zeros((workload.n_rays, 3))
     as_recorded, first_shadows = hits == workload.hits, _first_shadows(workload)
     geometry, work = traced.geometry, work_for(traced.geometry.shapes)
-    for start, rays in generations(traced):
+    for start, rays in recorded_generations(traced):
         stop = start + len(rays.kinds)
         distances = workload.hit_distances[start:stop] * traced.frame.scale
         shadows = first_shadows[start:stop]
@@ -99,9 +100,9 @@ def _lighting(traced: Traced) -> Lighting:
     lights, n = scene.lights, len(scene.lights)
     positions = np.array([light.position for light in lights], dtype=np.float64).reshape(-1, 3)
     colours = np.array([light.colour for light in lights], dtype=np.float64).reshape(-1, 3)
-    used = np.array([item.material for item in scene.objects], dtype=np.int64)
+    surface_of = np.array([item.material for item in scene.objects], dtype=np.int64)
     return Lighting(
-        materials=np.array(rows, dtype=np.float64).reshape(-1, 7)[used],
+        materials=np.array(rows, dtype=np.float64).reshape(-1, 7)[surface_of],
         lights=traced.frame.points(positions),
         colours=colours * (math.sqrt(n) / (2 * n)) if n else colours,
         background=np.array(scene.background, dtype=np.float64),
@@ -113,7 +114,7 @@ def _lighting(traced: Traced) -> Lighting:
 def _shade(
     geometry: Geometry,
     lighting: Lighting,
-    rays: Rays,
+    rays: RayBatch,
     start: int,
     hits: Ints,
     as_recorded: NDArray[np.bool_],
@@ -161,17 +162,16 @@ def _light(
     """Add to ``colour`` (3,) what each light gives that the surface faces and nothing blocks."""
     kd, ks, shine = material[3], material[4], material[5]
     for k in range(len(lighting.lights)):
-        light = lighting.lights[k]
-        x, y, z = towards(surface, light[0], light[1], light[2])
-        if not faces(surface, x, y, z):
+        to_light = minus(vector(lighting.lights, k), surface.point)
+        if not faces(surface, to_light):
             continue
         shadow += 1
         if lighting.shadows and hits[shadow - 1] >= 0:
             continue
-        x, y, z = normalised(x, y, z)
-        diffuse = kd * (surface.lx * x + surface.ly * y + surface.lz * z)
-        along = mirror[0] * x + mirror[1] * y + mirror[2] * z
-        before = surface.nx * x + surface.ny * y + surface.nz * z > 0.0
+        direction = normalised(to_light)
+        diffuse = kd * dot(surface.lit, direction)
+        along = dot(mirror, direction)
+        before = dot(surface.normal, direction) > 0.0
         highlight = ks * along**shine if before and along > 0.0 else 0.0
         for c in range(3):
             colour[c] += lighting.colours[k, c] * (diffuse * material[c] + highlight)
@@ -187,6 +187,7 @@ def _gather(
     materials: Floats,
 ) -> None:
     """Add to each ray what its children see, the last generation first."""
+    # A child has the greater number, so what it sees is complete before its parent takes a share.
     for i in range(len(kinds) - 1, -1, -1):
         parent = parents[i]
         if kinds[i] != SHADOW and parent >= 0 and as_recorded[parent]:

@@ -12,26 +12,19 @@ from simmpp.scene.scene import Vector
 from simmpp.workload.trace.exact import Floats, Ray, Row, hit_object, row_of
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.trace.itineraries import Work
+from simmpp.workload.trace.vectors import cross, dot, minus, moved, normalised, times, vector
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
 
 
 class Surface(NamedTuple):
     """Where a ray meets an object."""
 
-    x: float
-    y: float
-    z: float
-    ox: float
-    oy: float
-    oz: float
+    point: Vector
+    outside: Vector
     """The normal that points outside."""
-    nx: float
-    ny: float
-    nz: float
+    normal: Vector
     """The normal on the side of the ray."""
-    lx: float
-    ly: float
-    lz: float
+    lit: Vector
     """The normal on the side that light falls on: the ray's, but glass is lit from outside."""
     entering: bool
     """The ray comes from outside."""
@@ -47,95 +40,66 @@ def surface_at(
     shapes: Shapes, normals: Floats, i: int, ray: Ray, t: float, opaque: bool, work: Work
 ) -> Surface:
     """The :class:`Surface` of object ``i`` that ``ray`` hits at ``t``."""
-    x, y, z = ray.ox + t * ray.dx, ray.oy + t * ray.dy, ray.oz + t * ray.dz
+    point = moved(ray.origin, t, ray.direction)
     kind = shapes.objects[i, 0]
-    nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+    # All triangles of a polygon have one normal, so that light does not change between them.
+    outside = vector(normals, i)
     if kind != POLYGON:
         row = shapes.objects[i, 1]
         if kind == MESH:
-            _, row = hit_object(shapes, i, ray, 0.0, np.inf, work.inner_stack, work.inner_found)
+            # Asked again, since a workload records the object and not which triangle was hit.
+            _, row = hit_object(shapes, i, ray, 0.0, np.inf, work.inner)
         shape = row_of(shapes.surfaces, row)
         if kind == SPHERE:
-            nx, ny, nz = x - shape[0], y - shape[1], z - shape[2]
+            outside = minus(point, shape[:3])
         elif kind == CONE:
-            nx, ny, nz = _cone_normal(shape, x, y, z)
+            outside = _cone_normal(shape, point)
         else:
-            nx, ny, nz = _triangle_normal(shape)
-        nx, ny, nz = normalised(nx, ny, nz)
-    entering = nx * ray.dx + ny * ray.dy + nz * ray.dz <= 0.0
+            outside = cross(shape[3:6], shape[6:])
+        outside = normalised(outside)
+    entering = dot(outside, ray.direction) <= 0.0
     side = 1.0 if entering else -1.0
     lit = side if opaque else 1.0
     flat, convex = opaque and kind == POLYGON, opaque and kind in (SPHERE, CONE)
-    return Surface(
-        x, y, z,
-        nx, ny, nz,
-        side * nx, side * ny, side * nz,
-        lit * nx, lit * ny, lit * nz,
-        entering, flat, convex,
-    )  # fmt: skip
+    normal = times(side, outside)
+    return Surface(point, outside, normal, times(lit, outside), entering, flat, convex)
 
 
 @kernel
-def _cone_normal(shape: Row, x: float, y: float, z: float) -> Vector:
+def _cone_normal(shape: Row, point: Vector) -> Vector:
     """Away from the axis, tilted against the growth of the radius."""
-    x, y, z = x - shape[0], y - shape[1], z - shape[2]
-    ax, ay, az, growth = shape[3], shape[4], shape[5], shape[8]
-    along = x * ax + y * ay + z * az
+    from_base, axis, growth = minus(point, shape[:3]), shape[3:6], shape[8]
+    along = dot(from_base, axis)
     radius = shape[7] + growth * along
-    tilt = along + growth * radius
-    return x - tilt * ax, y - tilt * ay, z - tilt * az
+    # The gradient of |from_base - along axis|^2 - radius^2, halved.
+    return moved(from_base, -(along + growth * radius), axis)
 
 
 @kernel
-def _triangle_normal(e: Row) -> Vector:
-    return (
-        e[4] * e[8] - e[5] * e[7],
-        e[5] * e[6] - e[3] * e[8],
-        e[3] * e[7] - e[4] * e[6],
-    )
-
-
-@kernel
-def towards(surface: Surface, x: float, y: float, z: float) -> Vector:
-    """From the surface to a light."""
-    return x - surface.x, y - surface.y, z - surface.z
-
-
-@kernel
-def faces(surface: Surface, x: float, y: float, z: float) -> bool:
-    """Whether the surface faces a light in that direction.
+def faces(surface: Surface, to_light: Vector) -> bool:
+    """Whether the surface faces a light in that direction, which need not be of length 1.
 
     Inside glass that is its outside: from the inside, the glass itself would block every light.
     """
-    towards_it = surface.lx * x + surface.ly * y + surface.lz * z > 0.0
-    return towards_it and x * x + y * y + z * z > 0.0  # not at a light's own place
+    # The second test is of squares: one that underflows has no length to be divided by either.
+    return dot(surface.lit, to_light) > 0.0 and dot(to_light, to_light) > 0.0
 
 
 @kernel
 def reflected(ray: Ray, surface: Surface) -> Vector:
     """Mirror direction."""
-    nx, ny, nz = surface.nx, surface.ny, surface.nz
-    cosine = 2.0 * (ray.dx * nx + ray.dy * ny + ray.dz * nz)
-    return normalised(ray.dx - cosine * nx, ray.dy - cosine * ny, ray.dz - cosine * nz)
+    cosine = dot(ray.direction, surface.normal)
+    # Of length 1 but for roundings, which would add up from one reflection to the next.
+    return normalised(moved(ray.direction, -2.0 * cosine, surface.normal))
 
 
 @kernel
 def refracted(ray: Ray, surface: Surface, ior: float) -> tuple[bool, Vector]:
     """Whether the ray passes, and Snell's direction; from inside it leaves for vacuum."""
-    nx, ny, nz = surface.nx, surface.ny, surface.nz
     eta = 1.0 / ior if surface.entering else ior
-    cosine = -(ray.dx * nx + ray.dy * ny + ray.dz * nz)
+    cosine = -dot(ray.direction, surface.normal)
     below = 1.0 - eta * eta * (1.0 - cosine * cosine)
-    if not below >= 0.0:
+    if not below >= 0.0:  # nor if it is NaN, from an index near the end of float64
         return False, (0.0, 0.0, 0.0)
     bend = eta * cosine - math.sqrt(below)
-    return True, normalised(
-        eta * ray.dx + bend * nx, eta * ray.dy + bend * ny, eta * ray.dz + bend * nz
-    )
-
-
-@kernel
-def normalised(x: float, y: float, z: float) -> Vector:
-    """The vector at length 1."""
-    length = math.sqrt(x * x + y * y + z * z)
-    return x / length, y / length, z / length
+    return True, normalised(moved(times(eta, ray.direction), bend, surface.normal))

@@ -20,9 +20,10 @@ from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import Frame, frame_of
-from simmpp.workload.trace.generations import Rays, children, first_generation, joined, spawning
+from simmpp.workload.trace.generations import children, first_generation, spawning
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.ray_batch import RayBatch, joined
 from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
@@ -32,12 +33,11 @@ BYTES_PER_RAY = 100
 MOST_RAYS = 2**31 - 1
 """Ray numbers are int32."""
 Number = TypeVar("Number", bound=np.generic)
-Integer = TypeVar("Integer", np.int32, np.int64)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
 
 
-class Batch(NamedTuple):
+class Recorded(NamedTuple):
     """What is recorded of a run of rays, in workload order."""
 
     kinds: NDArray[np.uint8]
@@ -82,7 +82,7 @@ def trace(
     rules = spawning(scene, picture, frame, geometry)
     rays = first_generation(scene, picture, frame)
     proposer = intersector(geometry)
-    batches: list[Batch] = []
+    batches: list[Recorded] = []
     start = depth = 0
     while len(rays.kinds):
         depth += 1
@@ -96,7 +96,7 @@ def trace(
             known += len(young.kinds)
             _require_numbers(known, scene.name)
             batches.append(
-                Batch(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
+                Recorded(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
             )
             if progress:
                 progress(low + len(part.kinds), known)
@@ -122,30 +122,18 @@ def _require_memory(n_primaries: int, name: str) -> None:
 
 
 def _intersected(
-    geometry: Geometry, proposer: Intersector, rays: Rays
+    geometry: Geometry, proposer: Intersector, rays: RayBatch
 ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
     """Hits, normalised distances, lengths of the itineraries, and the itineraries of a batch."""
     claims = np.full((len(rays.kinds), 2), -1, dtype=np.int32)
+    # The nearest hit of a shadow ray is no bound: its first blocker by entry may lie behind it.
     asks = rays.kinds != SHADOW
     claims[asks] = proposer.claims(rays.origins[asks], rays.directions[asks])
-    hits, distances, n_tests, objects = find_itineraries(
-        geometry.shapes,
-        rays.origins,
-        rays.directions,
-        rays.kinds,
-        rays.limits,
-        rays.sources,
-        claims,
-    )
-    return hits, distances, n_tests, objects
+    return find_itineraries(geometry.shapes, rays, claims)
 
 
 def _workload(
-    scene: Scene,
-    picture: Picture,
-    geometry: Geometry,
-    frame: Frame,
-    batches: list[Batch],
+    scene: Scene, picture: Picture, geometry: Geometry, frame: Frame, batches: list[Recorded]
 ) -> Workload:
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
@@ -159,11 +147,12 @@ def _workload(
             picture=picture.shape,
             kinds=kinds,
             parents=parents,
-            child_offsets=_offsets(n_children, rows * columns, np.int32),
+            child_offsets=np.cumsum(np.insert(n_children, 0, rows * columns), dtype=np.int32),
             pixels=pixels_of(parents),
             hits=hits,
             hit_distances=frame.scene_lengths(distances),
-            itinerary_offsets=_offsets(n_tests, 0, np.int64),
+            # int64, since the tests of 2^31 rays may be more than 2^31.
+            itinerary_offsets=np.cumsum(np.insert(n_tests, 0, 0), dtype=np.int64),
             itinerary_objects=objects,
             object_kinds=geometry.kinds,
             object_triangles=geometry.n_triangles,
@@ -184,19 +173,10 @@ def _emptied(parts: list[NDArray[Number]]) -> NDArray[Number]:
     return whole
 
 
-def _offsets(counts: NDArray[np.int32], first: int, dtype: type[Integer]) -> NDArray[Integer]:
-    """(n + 1,) where each run of ``counts`` begins, and where the last one ends."""
-    offsets = np.empty(len(counts) + 1, dtype=dtype)
-    offsets[0] = first
-    np.cumsum(counts, out=offsets[1:])
-    offsets[1:] += dtype(first)
-    return offsets
-
-
 @njit
 def pixels_of(parents: NDArray[np.int32]) -> NDArray[np.int32]:
     """The primary ray at the root of each ray's tree, (n,) int32."""
     pixels = np.empty(len(parents), np.int32)
-    for i in range(len(parents)):
+    for i in range(len(parents)):  # a parent has the lower number: its pixel is known
         pixels[i] = i if parents[i] < 0 else pixels[parents[i]]
     return pixels

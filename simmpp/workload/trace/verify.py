@@ -15,10 +15,10 @@ from simmpp.common.compiled import njit
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import entry, hit_object, ray_of
-from simmpp.workload.trace.generations import Rays
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
-from simmpp.workload.trace.replay import SpawnError, Traced, generations, traced
+from simmpp.workload.trace.ray_batch import RayBatch
+from simmpp.workload.trace.replay import SpawnError, Traced, recorded_generations, traced
 from simmpp.workload.trace.shading import shade
 from simmpp.workload.workload import SHADOW, Workload
 
@@ -67,38 +67,32 @@ def verify(
 def _compared(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> Difference | None:
     workload = replayed.workload
     problem = _wrong_test(workload, tested_rays, tested_objects)
-    hits, distances = _hits_of_tests(replayed, *_existing(workload, tested_rays, tested_objects))
+    hits, distances = hits_of_tests(replayed, tested_rays, tested_objects)
     wrong = (hits != workload.hits) | (distances != workload.hit_distances)
     if problem is None and wrong.any():
         ray = int(wrong.argmax())
-        found = f"its tests hit object {hits[ray]} at {distances[ray]!r}"
+        obtained = f"its tests hit object {hits[ray]} at {distances[ray]!r}"
         recorded = f"{workload.hits[ray]} at {workload.hit_distances[ray]!r} is recorded"
-        problem = ray, f"ray {ray}: {found}, {recorded}"
+        problem = ray, f"ray {ray}: {obtained}, {recorded}"
     return _difference(replayed, hits, problem)
 
 
-def rays_from_tests(
-    scene: Scene, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
-) -> tuple[Ints, Floats]:
+def hits_of_tests(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> tuple[Ints, Floats]:
     """What the tests find: hits (n,) int32, -1 for none, and distances (n,) float64, scene units.
 
     A ray takes the nearest hit of its tests, a shadow ray the blocker whose box it enters first,
     ties by object. Rays are recomputed generation by generation from the recorded hits, so the
-    answer of a ray is meaningful if its ancestors' hits are the recorded ones.
+    answer of a ray is meaningful if its ancestors' hits are the recorded ones. Tests of rays and
+    objects that do not exist find nothing.
     """
-    replayed = traced(scene, picture, workload)
-    return _hits_of_tests(replayed, *_existing(workload, tested_rays, tested_objects))
-
-
-def _hits_of_tests(
-    replayed: Traced, tested_rays: Ints, tested_objects: Ints
-) -> tuple[Ints, Floats]:
     workload = replayed.workload
     hits, distances = np.full(workload.n_rays, -1, np.int32), np.full(workload.n_rays, np.inf)
     places, work = np.full(workload.n_rays, np.inf), work_for(replayed.geometry.shapes)
-    for start, rays in generations(replayed):
+    exists = (tested_objects >= 0) & (tested_objects < workload.n_objects)
+    for start, rays in recorded_generations(replayed):
         stop = start + len(rays.kinds)
-        mine = np.flatnonzero((tested_rays >= start) & (tested_rays < stop))
+        mine = np.flatnonzero(exists & (tested_rays >= start) & (tested_rays < stop))
+        # By object, so that its triangles stay in the CPU's cache from one test to the next.
         by_object = mine[np.argsort(tested_objects[mine], kind="stable")]
         _intersect_pairs(
             replayed.geometry,
@@ -116,7 +110,7 @@ def _hits_of_tests(
 @njit
 def _intersect_pairs(
     geometry: Geometry,
-    rays: Rays,
+    rays: RayBatch,
     tested_rays: Ints,
     tested_objects: Ints,
     hits: Ints,
@@ -125,12 +119,11 @@ def _intersect_pairs(
     work: Work,
 ) -> None:
     """Intersect pairs of a generation; the first hit of each ray is that of the least place."""
-    stack, found = work.inner_stack, work.inner_found
     for k in range(len(tested_rays)):
         i, o = tested_rays[k], tested_objects[k]
         ray = ray_of(rays.origins, rays.directions, i)
         enter = entry(geometry.boxes, o, ray)
-        t, _ = hit_object(geometry.shapes, o, ray, enter, np.inf, stack, found)
+        t, _ = hit_object(geometry.shapes, o, ray, enter, np.inf, work.inner)
         if o == rays.sources[i] or not t < rays.limits[i]:
             continue
         place = enter if rays.kinds[i] == SHADOW else t
@@ -138,17 +131,11 @@ def _intersect_pairs(
             hits[i], distances[i], places[i] = o, t, place
 
 
-def _existing(workload: Workload, tested_rays: Ints, tested_objects: Ints) -> tuple[Ints, Ints]:
-    """The tests of rays and objects that there are."""
-    rays = (tested_rays >= 0) & (tested_rays < workload.n_rays)
-    objects = (tested_objects >= 0) & (tested_objects < workload.n_objects)
-    return tested_rays[rays & objects], tested_objects[rays & objects]
-
-
 def _wrong_test(
     workload: Workload, tested_rays: Ints, tested_objects: Ints
 ) -> tuple[int, str] | None:
     """The first ray that misses a test of its itinerary or has one too many; None if none does."""
+    # A test as one number, which sorts by ray and then by object.
     tested = np.int64(1 << 32) * tested_rays + tested_objects
     rays = np.repeat(np.arange(workload.n_rays), np.diff(workload.itinerary_offsets))
     expected = np.sort(np.int64(1 << 32) * rays + workload.itinerary_objects)
@@ -161,12 +148,8 @@ def _wrong_test(
     extra = first == len(expected) or (first < len(tested) and tested[first] < expected[first])
     pair = int(tested[first] if extra else expected[first])
     ray, item = pair >> 32, pair & 0xFFFFFFFF
-    problem = (
-        "is tested against object {}, once too often"
-        if extra
-        else "is never tested against object {}"
-    )
-    return ray, f"ray {ray} " + problem.format(item)
+    often, too_often = ("", ", once too often") if extra else ("never ", "")
+    return ray, f"ray {ray} is {often}tested against object {item}{too_often}"
 
 
 def _difference(replayed: Traced, hits: Ints, problem: tuple[int, str] | None) -> Difference | None:

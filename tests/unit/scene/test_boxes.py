@@ -7,11 +7,15 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from simmpp.scene.boxes import box, boxes, scene_box
+from simmpp.scene.boxes import boxes, scene_box
 from simmpp.scene.scene import Cone, MeshPart, Polygon, Sphere
 
 COORDINATE = st.floats(-10, 10)
 POINT = st.tuples(COORDINATE, COORDINATE, COORDINATE)
+
+
+def box(item):
+    return boxes([item])[0]
 
 
 def test_sphere() -> None:

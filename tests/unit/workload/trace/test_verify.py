@@ -10,9 +10,10 @@ import pytest
 from simmpp.common.errors import WorkloadError
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
+from simmpp.workload.trace.replay import traced
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.tracer import trace
-from simmpp.workload.trace.verify import rays_from_tests, verify
+from simmpp.workload.trace.verify import hits_of_tests, verify
 from simmpp.workload.workload import SHADOW
 
 PICTURE = Picture(resolution=20)
@@ -34,7 +35,8 @@ def test_the_itineraries_in_any_order_make_the_picture(name, samples) -> None:
     rays, objects = recorded_tests(workload)
     order = np.random.default_rng(0).permutation(len(rays))
     assert verify(scene, picture, workload, rays[order], objects[order]) is None
-    hits, distances = rays_from_tests(scene, picture, workload, rays[order], objects[order])
+    replayed = traced(scene, picture, workload)
+    hits, distances = hits_of_tests(replayed, rays[order], objects[order])
     assert hits.tobytes() == workload.hits.tobytes()
     assert distances.tobytes() == workload.hit_distances.tobytes()
 
