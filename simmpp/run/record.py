@@ -24,13 +24,10 @@ from simmpp.run.provenance import all_versions
 from simmpp.run.rows import row
 from simmpp.run.summary import imbalance, utilisation
 
-IRRELEVANT_TO_ROWS = ("check",)
-"""Keys of a configuration that decide no row."""
-
 
 def recorded(config: Config) -> dict[str, Any]:
-    """The configuration with all its defaults, without what decides no row."""
-    return {k: v for k, v in described(config).items() if k not in IRRELEVANT_TO_ROWS}
+    """The configuration with all its defaults, without the one key that decides no row."""
+    return {key: value for key, value in described(config).items() if key != "check"}
 
 
 def record(

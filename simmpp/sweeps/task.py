@@ -44,7 +44,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     if settings.method == SIMULATE and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = POLICIES[policy.name].all_resident
-    rules = config.placement_rules
+    rules = config.settings.placement
     if everywhere:
         rules = PlacementRules(pixels=rules.pixels)
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory

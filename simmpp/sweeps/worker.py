@@ -94,7 +94,7 @@ def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
     """The placement and the seconds that drawing it took."""
     began, config = now(), task.config
     placement = place(
-        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
+        case.workload, case.machine.processors, config.memory, config.settings.placement, task.seed
     )
     return placement, now() - began
 
