@@ -182,18 +182,14 @@ def fields_of(cls: type) -> dict[str, FieldInfo]:
 
 def expectation(field: FieldInfo) -> Expect | None:
     """What a field takes, if it says so."""
-    expected = _mark(field, Expect)
+    expected = mark_of(field, Expect)
     if expected is None and get_origin(field.annotation) is Literal:
         return Expect(in_words(get_args(field.annotation)))
     return expected
 
 
-def short_form(field: FieldInfo) -> Short | None:
-    """The shorter way to write what a field takes, if there is one."""
-    return _mark(field, Short)
-
-
-def _mark(field: FieldInfo, kind: type[T]) -> T | None:
+def mark_of(field: FieldInfo, kind: type[T]) -> T | None:
+    """The mark of a kind, such as Short, that a field's type has, if it has one."""
     marks = list(field.metadata)
     for option in get_args(field.annotation):  # of "X | None"
         marks += getattr(option, "__metadata__", ())

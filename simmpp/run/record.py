@@ -41,10 +41,7 @@ def record(
 
     ``workloads`` are the digests of each scene's, by its name; equal machines are there once.
     """
-    constants: dict[str, dict[str, Any]] = {}
-    for machine in machines:
-        values = asdict(machine)
-        constants.setdefault(json.dumps(values), values)
+    constants = {json.dumps(values): values for values in map(asdict, machines)}
     return {
         "versions": all_versions(),
         "config": recorded(config),
@@ -76,8 +73,7 @@ def record_of_run(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
 
 def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str, Any]:
     result, base, ceiling = run.result, reference_of(runs).result, ceiling_of(runs)
-    parameters = asdict(run.parameters)
-    parameters["min_load"] = str(parameters["min_load"])
+    parameters = asdict(run.parameters) | {"min_load": str(run.parameters.min_load)}
     share = utilisation(run)
     return {
         "policy": run.parameters.title,
