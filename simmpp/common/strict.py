@@ -55,8 +55,8 @@ class Strict(BaseModel):
 @dataclass_transform(frozen_default=True)
 def declared(cls: type[T]) -> type[T]:
     """A frozen dataclass of settings; wrong arguments are a ConfigError of one line."""
-    made: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
-    init, names = made.__init__, [field.name for field in fields(made)]
+    settings: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
+    init, names = settings.__init__, [field.name for field in fields(settings)]
 
     @wraps(init)
     def checked(self: T, *arguments: Any, **named: Any) -> None:
@@ -64,10 +64,10 @@ def declared(cls: type[T]) -> type[T]:
         try:
             init(self, *arguments[len(names) :], **by_name, **named)
         except ValidationError as error:
-            raise _explained(made, error, {}) from None
+            raise _explained(settings, error, {}) from None
 
-    made.__init__ = checked
-    return cast(type[T], made)
+    settings.__init__ = checked
+    return cast(type[T], settings)
 
 
 @dataclass(frozen=True, eq=False)

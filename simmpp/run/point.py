@@ -83,9 +83,8 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     named = config.settings.policy
     names = [parameters.name for parameters in named]
     chosen = [(parameters, True) for parameters in named]
-    chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
-    if REFERENCE not in names:
-        return [(PolicyParameters(REFERENCE), False), *chosen]
+    others = [name for name in (REFERENCE, CEILING) if name not in names]
+    chosen += [(PolicyParameters(name), False) for name in others]
     return sorted(chosen, key=lambda pair: pair[0].name != REFERENCE)
 
 
