@@ -54,10 +54,8 @@ def seeds_in_order(given: Sequence[int], count: int) -> list[int]:
 
 def first_seeds(settings: Settings) -> list[int]:
     """The seeds that every point has."""
-    given = settings.seeds
-    if settings.tolerance is None:
-        return list(given)
-    return seeds_in_order(given, max(FEWEST, len(given)))
+    least = 1 if settings.tolerance is None else FEWEST
+    return seeds_in_order(settings.seeds, max(least, len(settings.seeds)))
 
 
 def seeds_wanted(
