@@ -55,8 +55,8 @@ class Strict(BaseModel):
 @dataclass_transform(frozen_default=True)
 def declared(cls: type[T]) -> type[T]:
     """A frozen dataclass of settings; wrong arguments are a ConfigError of one line."""
-    made: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
-    init, names = made.__init__, [field.name for field in fields(made)]
+    settings: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
+    init, names = settings.__init__, [field.name for field in fields(settings)]
 
     @wraps(init)
     def checked(self: T, *arguments: Any, **named: Any) -> None:
@@ -64,10 +64,10 @@ def declared(cls: type[T]) -> type[T]:
         try:
             init(self, *arguments[len(names) :], **by_name, **named)
         except ValidationError as error:
-            raise _explained(made, error, {}) from None
+            raise _explained(settings, error, {}) from None
 
-    made.__init__ = checked
-    return cast(type[T], made)
+    settings.__init__ = checked
+    return cast(type[T], settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,18 +182,14 @@ def fields_of(cls: type) -> dict[str, FieldInfo]:
 
 def expectation(field: FieldInfo) -> Expect | None:
     """What a field takes, if it says so."""
-    expected = _mark(field, Expect)
+    expected = mark_of(field, Expect)
     if expected is None and get_origin(field.annotation) is Literal:
         return Expect(in_words(get_args(field.annotation)))
     return expected
 
 
-def short_form(field: FieldInfo) -> Short | None:
-    """The shorter way to write what a field takes, if there is one."""
-    return _mark(field, Short)
-
-
-def _mark(field: FieldInfo, kind: type[T]) -> T | None:
+def mark_of(field: FieldInfo, kind: type[T]) -> T | None:
+    """The mark of a kind, such as Short, that a field's type has, if it has one."""
     marks = list(field.metadata)
     for option in get_args(field.annotation):  # of "X | None"
         marks += getattr(option, "__metadata__", ())

@@ -13,19 +13,17 @@ MOST_COUNT = 2**31 - 1
 MOST_SEED = 2**63 - 1
 
 
-def whole(value: object, least: int, most: int) -> int:
+def whole(value: object, least: int, most: int, name: str = "") -> int:
     """``value`` if it is an integer, Python's or numpy's, in that range; else ConfigError."""
     if isinstance(value, Integral) and not isinstance(value, bool) and least <= int(value) <= most:
         return int(value)
-    raise ConfigError(f"value {shown(value)}: expected an integer from {least} to {most}")
+    prefix = f"{name}: " if name else ""
+    raise ConfigError(f"{prefix}value {shown(value)}: expected an integer from {least} to {most}")
 
 
 def require_whole(name: str, value: object, least: int, most: int = MOST_COUNT) -> None:
     """Raise ConfigError unless ``value`` is an integer, Python's or numpy's, in that range."""
-    try:
-        whole(value, least, most)
-    except ConfigError as error:
-        raise ConfigError(f"{name}: {error.problem}") from None
+    whole(value, least, most, name)
 
 
 def require_word(name: str, value: object, words: Sequence[str]) -> None:

@@ -20,8 +20,7 @@ from simmpp.config.overrides import Places, override, set_key
 from simmpp.config.settings import Settings
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine, torus_shape
-from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.parameters import PolicyParameters
+from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
@@ -95,16 +94,6 @@ class Config:
     def memory(self) -> Memory:
         """Memory of one PE."""
         return self.settings.memory
-
-    @property
-    def placement_rules(self) -> PlacementRules:
-        """How objects and pixels are dealt."""
-        return self.settings.placement
-
-    @property
-    def policies(self) -> tuple[PolicyParameters, ...]:
-        """The policies named, in their order."""
-        return self.settings.policy
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:

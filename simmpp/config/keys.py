@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Expect, expectation, fields_of, inner_class, short_form
+from simmpp.common.strict import Expect, Short, expectation, fields_of, inner_class, mark_of
 from simmpp.common.units import shown
 from simmpp.config.overrides import key_path
 from simmpp.config.settings import Settings
@@ -52,7 +52,7 @@ def keys() -> dict[str, Key]:
 def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
     holder = "#" if cls is Settings else f"#/$defs/{cls.__name__}"
     for key, field in fields_of(cls).items():
-        inner, expected, short = inner_class(cls, key), expectation(field), short_form(field)
+        inner, expected, short = inner_class(cls, key), expectation(field), mark_of(field, Short)
         if expected is None:
             mapping = "a mapping of the keys below"
             expected = Expect(f"{short.text}, or {mapping}" if short else mapping)

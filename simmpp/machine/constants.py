@@ -54,17 +54,17 @@ def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
     """
     hints, meanings = get_type_hints(cls, include_extras=True), _meanings(cls)
     model: dict[str, Any] = {}
-    for each in fields(cls):
-        if each.name not in OTHERS:
-            hint, default = hints[each.name], None
+    for constant in fields(cls):
+        if constant.name not in OTHERS:
+            hint, default = hints[constant.name], None
             if hint in nested:
                 hint, default = nested[hint]
             elif get_origin(hint) is Literal:
-                default = each.default
+                default = constant.default
             else:
                 hint |= None
-            meaning = Field(default=default, description=meanings[each.name])
-            model[key_of(each.name)] = (hint, meaning)
+            meaning = Field(default=default, description=meanings[constant.name])
+            model[key_of(constant.name)] = (hint, meaning)
     return model
 
 
@@ -127,17 +127,17 @@ def machine_of(numbers: Mapping[str, int], **others: Any) -> Machine:
 
 def _arguments(cls: Any, numbers: Mapping[str, int], prefix: str) -> dict[str, Any]:
     """Those of the numbers that a class of constants is made of, by its fields."""
-    made: dict[str, Any] = {}
+    arguments: dict[str, Any] = {}
     for name, hint in _hints(cls).items():
         key = prefix + key_of(name)
         if key in numbers:
-            made[name] = numbers[key]
+            arguments[name] = numbers[key]
         elif hint == Copies:
             kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in MESSAGE_KINDS)
-            made[name] = tuple(CopyCost(**kind) for kind in kinds)
+            arguments[name] = tuple(CopyCost(**kind) for kind in kinds)
         elif hint is TestCost:
-            made[name] = TestCost(**_arguments(TestCost, numbers, f"{key}."))
-    return made
+            arguments[name] = TestCost(**_arguments(TestCost, numbers, f"{key}."))
+    return arguments
 
 
 _hints = cache(get_type_hints)

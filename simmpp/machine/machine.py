@@ -73,12 +73,8 @@ class TestCost:
         if len(workload.object_test_ps):
             return workload.object_test_ps.astype(dtype)
         by_kind: NDArray[Any] = np.zeros(4, dtype)
-        by_kind[[SPHERE, CONE, POLYGON, MESH]] = (
-            self.sphere_ps,
-            self.cone_ps,
-            self.polygon_ps,
-            self.mesh_ps,
-        )
+        costs_ps = (self.sphere_ps, self.cone_ps, self.polygon_ps, self.mesh_ps)
+        by_kind[[SPHERE, CONE, POLYGON, MESH]] = costs_ps
         beyond_first = np.maximum(workload.object_triangles.astype(dtype) - 1, 0)
         return by_kind[workload.object_kinds] + self.per_triangle_ps * beyond_first
 

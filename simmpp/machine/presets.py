@@ -91,18 +91,17 @@ def _values(
     places: Mapping[KeyPath, Place],
 ) -> object:
     """``{value, source}`` leaves reduced to their values; the rest goes into texts and sources."""
-    if not isinstance(node, dict):
-        raise misplaced(path, "expected {value: ..., source: ...}", places)
-    if "value" not in node:
-        return {
-            key: _values(child, (*path, key), texts, sources, places) for key, child in node.items()
-        }
-    key = ".".join(map(str, path))
-    source = node.get("source")
-    if set(node) != {"value", "source"} or not isinstance(source, str) or not source.strip():
-        raise misplaced(path, "expected {value: ..., source: ...}", places)
-    texts[key], sources[key] = str(node["value"]), " ".join(source.split())
-    return node["value"]
+    match node:
+        case {"value": value, "source": str(source), **others} if source.strip() and not others:
+            key = ".".join(map(str, path))
+            texts[key], sources[key] = str(value), " ".join(source.split())
+            return value
+        case dict() if "value" not in node:
+            return {
+                key: _values(child, (*path, key), texts, sources, places)
+                for key, child in node.items()
+            }
+    raise misplaced(path, "expected {value: ..., source: ...}", places)
 
 
 def machine(

@@ -5,8 +5,8 @@ regime, fewer once rays disappear. How many a PE has, and how many of these lack
 from the recurrence relations (1) and (2) with the imbalance zeta.
 
 *Decay.* The paper says that "from a given step, rays start to disappear" but not how. Here the
-number of rays at each step is that of the workload traced in lockstep (``workload.lockstep``), or
-that of rays with a geometric or fixed number of tests; all PEs lose the same share of their rays.
+number of rays at each step is that of the workload traced in lockstep (``model.lockstep``); all PEs
+lose the same share of their rays.
 
 *Imbalance.* The paper asks of zeta(i, j, k) in [-1, 1] that the number of rays stays n0 (equation
 (5), whose outer sum is over i, though printed over j). Here zeta depends on the owner: zeta(i, j,
@@ -56,6 +56,7 @@ RayMessages = Literal["to-all", "with-rays", "after-runs"]
 without rays (``to-all``). Real machines need not: only messages that carry a ray (``with-rays``),
 for m rays to uniform destinations (nb - 1)(1 - (1 - 1/(nb - 1))^m); or these, and a PE sends only
 when all its rays lack an object, after a run of 1 / (1 - x) tests in the mean (``after-runs``)."""
+RAY_MESSAGES: tuple[RayMessages, ...] = ("to-all", "with-rays", "after-runs")
 
 ROUNDING = 1e-9
 """Times that differ by less are equal but for the rounding of sums."""
@@ -89,24 +90,6 @@ def rays_of(workload: Workload) -> Rays:
     steps = steps_of(workload)
     tests, ended = steps.tests.astype(np.float64), steps.ended.astype(np.float64)
     return Rays(tests, ended, np.ones(len(tests)))
-
-
-def permanent(rays: float, steps: int) -> Rays:
-    """``rays`` that all need ``steps`` tests: a permanent regime that ends at once."""
-    ended = np.zeros(steps)
-    ended[-1] = rays
-    return Rays(np.full(steps, float(rays)), ended, np.ones(steps))
-
-
-def geometric(rays: float, mean_steps: float, least: float = 0.5) -> Rays:
-    """Rays that end after each step with probability 1 / ``mean_steps``: decay from the start.
-
-    The series is cut where fewer than ``least`` rays are left.
-    """
-    stays = 1.0 - 1.0 / mean_steps
-    last = int(np.log(least / rays) / np.log(stays)) if stays > 0 and least < rays else 0
-    tests = np.asarray(rays * stays ** np.arange(last + 1), np.float64)
-    return Rays(tests, tests - np.append(tests[1:], 0.0), np.ones(last + 1))
 
 
 def grouped(rays: Rays, most: int) -> Rays:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.model.analytical import Makespans, Rays
+from simmpp.model.analytical import Makespans
 from simmpp.model.costs import Costs
 
 Floats = NDArray[np.float64]
@@ -37,26 +37,20 @@ def winners(times: Makespans) -> NDArray[np.int8]:
     return np.sign(times.ratio - 1.0).astype(np.int8)
 
 
-def border_without_imbalance(costs: Costs, processors: Floats, rays: Rays) -> Floats:
-    """The x at which TC = TO, with zeta = 0: (B,), below 0 where object dataflow always wins.
+def border_terms(costs: Costs) -> tuple[float, float]:
+    """M and S of the border without imbalance, x = 1 - nb (nb - 1) M / (n S), at which TC = TO.
 
     Both dataflows compute the same; with n = mean over the steps of all rays of the machine,
-    TC = TO where (1 - x) n / nb (A - P) = (nb - 1) M, with A the startups and packing of a request
-    and its object, sent and received, P a ray's packing and unpacking and M the startups and the
-    fixed packing of a message of rays: so T_ray has no part in it, and
-    x = 1 - nb (nb - 1) M / (n (A - P)). With packing that is negligible, A = 2 M: the border is
-    where a message holds half a ray.
-
-    Where a ray costs as much to pack as asking costs in all, A <= P, object dataflow always wins.
+    TC = TO where (1 - x) n / nb S = (nb - 1) M: S is what a ray saves that is sent and not served,
+    the startups and packing of a request and its object, sent and received, less a ray's packing
+    and unpacking; M is the startups and the fixed packing of a message of rays. So T_ray has no
+    part in it. With packing that is negligible, S = 2 M: the border is where a message holds half
+    a ray. Where a ray costs as much to pack as asking costs in all, S <= 0, object dataflow always
+    wins.
     """
-    asking = 2 * costs.startup
-    asking += costs.pack_request + costs.unpack_request + costs.pack_object + costs.unpack_object
-    saved = asking - costs.pack_ray - costs.unpack_ray
+    asking = costs.pack_request + costs.unpack_request + costs.pack_object + costs.unpack_object
     message = costs.startup + costs.pack_message + costs.unpack_message
-    if saved <= 0:
-        return np.full(len(processors), -np.inf)
-    nb = np.asarray(processors, np.float64)
-    return np.asarray(1.0 - nb * (nb - 1) * message / (rays.mean_tests * saved))
+    return message, 2 * costs.startup + asking - costs.pack_ray - costs.unpack_ray
 
 
 def borders(times: Makespans) -> Floats:
@@ -64,16 +58,16 @@ def borders(times: Makespans) -> Floats:
 
     NaN where one dataflow wins at every x of the grid; ties are no change.
     """
-    found = np.full(len(times.processors), np.nan)
+    changes = np.full(len(times.processors), np.nan)
     for row, ratios in enumerate(np.log(times.ratio)):
         known = np.flatnonzero(ratios)
         for left, right in pairwise(known):
             if ratios[left] * ratios[right] < 0:
                 weight = ratios[left] / (ratios[left] - ratios[right])
                 x = times.fractions
-                found[row] = x[left] + weight * (x[right] - x[left])
+                changes[row] = x[left] + weight * (x[right] - x[left])
                 break
-    return found
+    return changes
 
 
 def claims(times: Makespans) -> tuple[ModelVerdict, ModelVerdict]:
@@ -94,9 +88,9 @@ def _changes_once(times: Makespans) -> ModelVerdict:
             changing.append(nb)
         if changes not in ([], [OBJECT]):
             wrong.append(nb)
-    found = f"changes at nb = {_listed(changing)}" if changing else "no change at any nb"
-    found += f"; not once, from ray to object, at nb = {_listed(wrong)}" if wrong else ""
-    return ModelVerdict("F2a", bool(changing) and not wrong, found)
+    text = f"changes at nb = {_listed(changing)}" if changing else "no change at any nb"
+    text += f"; not once, from ray to object, at nb = {_listed(wrong)}" if wrong else ""
+    return ModelVerdict("F2a", bool(changing) and not wrong, text)
 
 
 def _never_rises(times: Makespans) -> ModelVerdict:
@@ -104,8 +98,8 @@ def _never_rises(times: Makespans) -> ModelVerdict:
     changing = np.isfinite(at)
     steps = np.diff(at[changing][np.argsort(times.processors[changing])])
     pairs = zip(times.processors[changing].tolist(), at[changing].tolist(), strict=True)
-    found = ", ".join(f"x = {x:.3g} at nb = {nb}" for nb, x in pairs) or "no change at any nb"
-    return ModelVerdict("F2b", bool(changing.sum() > 1 and (steps <= 0).all()), found)
+    text = ", ".join(f"x = {x:.3g} at nb = {nb}" for nb, x in pairs) or "no change at any nb"
+    return ModelVerdict("F2b", bool(changing.sum() > 1 and (steps <= 0).all()), text)
 
 
 def _listed(numbers: list[int]) -> str:

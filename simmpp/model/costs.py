@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -11,23 +11,6 @@ from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.machine.transfer import PS_PER_S, transfer_ps
 from simmpp.workload.workload import Workload
-
-GROUPS = {
-    "startup": ("sending", "receipt"),
-    "packing": (
-        "pack_request",
-        "unpack_request",
-        "pack_object",
-        "unpack_object",
-        "pack_ray",
-        "unpack_ray",
-        "pack_message",
-        "unpack_message",
-    ),
-    "object": ("pack_object", "unpack_object"),
-    "test": ("ray", "deletion"),
-}
-"""Operations that a ratio scales together, by the name that the command takes."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +49,15 @@ class Costs:
     def startup(self) -> float:
         """T_sending + T_receipt."""
         return self.sending + self.receipt
+
+
+GROUPS = {
+    "startup": ("sending", "receipt"),
+    "packing": tuple(field.name for field in fields(Costs) if "pack" in field.name),
+    "object": ("pack_object", "unpack_object"),
+    "test": ("ray", "deletion"),
+}
+"""Operations that a ratio scales together, by the name that the command takes."""
 
 
 def costs_of(machine: Machine, workload: Workload) -> Costs:

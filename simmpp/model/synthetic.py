@@ -61,7 +61,7 @@ def synthetic(
             object_kinds=np.full(objects, SPHERE, np.uint8),
             object_triangles=np.zeros(objects, np.int32),
             object_bytes=np.full(objects, object_bytes, np.int64),
-            object_centroids=_on_a_line(objects),
+            object_centroids=np.arange(objects)[:, np.newaxis] * np.array([1.0, 0.0, 0.0]),
         )
     )
 
@@ -70,10 +70,3 @@ def _lengths(rays: int, steps: int, lives: Lives, seed: int) -> NDArray[np.int64
     if lives == "fixed":
         return np.full(rays, steps, np.int64)
     return generator(seed, "synthetic lives").geometric(1.0 / steps, rays)
-
-
-def _on_a_line(objects: int) -> NDArray[np.float64]:
-    """Places that any rule of owners can deal out evenly: (N, 3)."""
-    places = np.zeros((objects, 3))
-    places[:, 0] = np.arange(objects)
-    return places

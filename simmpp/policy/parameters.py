@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
 from typing import Annotated, Any, Literal, get_args
 
@@ -53,11 +54,9 @@ def _load(
 def _load_info(value: object) -> object:
     """One of the words; ``{refresh: 5 ms}`` is piggyback, and sets ``refresh_ps`` as well."""
     if isinstance(value, dict) and set(value) == {"refresh"}:
-        try:
+        with suppress(ConfigError):
             picoseconds(value["refresh"])
             return "piggyback"
-        except ConfigError:
-            pass
     return _word(value)
 
 

@@ -64,7 +64,7 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
     refuse_models(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
-    placement = place(workload, config.processors, config.memory, config.placement_rules, seed)
+    placement = place(workload, config.processors, config.memory, config.settings.placement, seed)
     return Point(config, workload, machine, placement, seed)
 
 
@@ -78,12 +78,11 @@ def refuse_models(config: Config) -> None:
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     """The policies to run, and whether the configuration names them; the reference comes first."""
-    named = config.policies
+    named = config.settings.policy
     names = [parameters.name for parameters in named]
     chosen = [(parameters, True) for parameters in named]
-    chosen += [(PolicyParameters(CEILING), False)] if CEILING not in names else []
-    if REFERENCE not in names:
-        return [(PolicyParameters(REFERENCE), False), *chosen]
+    others = [name for name in (REFERENCE, CEILING) if name not in names]
+    chosen += [(PolicyParameters(name), False) for name in others]
     return sorted(chosen, key=lambda pair: pair[0].name != REFERENCE)
 
 

@@ -24,13 +24,10 @@ from simmpp.run.provenance import all_versions
 from simmpp.run.rows import row
 from simmpp.run.summary import imbalance, utilisation
 
-IRRELEVANT_TO_ROWS = ("check",)
-"""Keys of a configuration that decide no row."""
-
 
 def recorded(config: Config) -> dict[str, Any]:
-    """The configuration with all its defaults, without what decides no row."""
-    return {k: v for k, v in described(config).items() if k not in IRRELEVANT_TO_ROWS}
+    """The configuration with all its defaults, without the one key that decides no row."""
+    return {key: value for key, value in described(config).items() if key != "check"}
 
 
 def record(
@@ -44,10 +41,7 @@ def record(
 
     ``workloads`` are the digests of each scene's, by its name; equal machines are there once.
     """
-    constants: dict[str, dict[str, Any]] = {}
-    for machine in machines:
-        values = asdict(machine)
-        constants.setdefault(json.dumps(values), values)
+    constants = {json.dumps(values): values for values in map(asdict, machines)}
     return {
         "versions": all_versions(),
         "config": recorded(config),
@@ -79,8 +73,7 @@ def record_of_run(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
 
 def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str, Any]:
     result, base, ceiling = run.result, reference_of(runs).result, ceiling_of(runs)
-    parameters = asdict(run.parameters)
-    parameters["min_load"] = str(parameters["min_load"])
+    parameters = asdict(run.parameters) | {"min_load": str(run.parameters.min_load)}
     share = utilisation(run)
     return {
         "policy": run.parameters.title,

@@ -31,7 +31,7 @@ class Comparison:
     config: Config
     swept: Mapping[str, Value]
     """Value of each further column."""
-    policies: Mapping[str, PolicyParameters]
+    policies: dict[str, PolicyParameters]
     """By title, without the reference unless it is named."""
 
     @property
@@ -94,16 +94,16 @@ def _require_feasible(config: Config, n_seeds: int) -> None:
 
 def comparisons(config: Config) -> list[Comparison]:
     """Combinations of the axes; those that differ in their policies only are one."""
-    combinations: dict[str, tuple[Config, Mapping[str, Value], dict[str, PolicyParameters]]] = {}
+    combinations: dict[str, Comparison] = {}
     for point, swept in _combinations(config):
         key = json.dumps([described(point) | {"policy": None}, swept], sort_keys=True)
-        _, _, policies = combinations.setdefault(key, (point, swept, {}))
-        for policy in point.policies:
+        policies = combinations.setdefault(key, Comparison(point, swept, {})).policies
+        for policy in point.settings.policy:
             if policies.setdefault(policy.title, policy) != policy:
                 raise ConfigError(
                     f"sweep: two policies are called {policy.title!r}: expected a label for each"
                 )
-    return [Comparison(*parts) for parts in combinations.values()]
+    return list(combinations.values())
 
 
 def _combinations(config: Config) -> Iterator[tuple[Config, Mapping[str, Value]]]:

@@ -21,9 +21,12 @@ def half_width(values: Sequence[float], confidence: float) -> float:
     n, mean = len(values), fmean(values)
     if min(values) == max(values):
         return 0.0
+    deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1))
+    return quantile(n - 1, confidence) * deviation / math.sqrt(n)
+
+
+def quantile(freedom: int, confidence: float) -> float:
+    """Student's t that is exceeded on either side with probability (1 - confidence) / 2."""
     from scipy.special import stdtrit  # takes half a second
 
-    deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1))
-    # Student's t that is exceeded on either side with probability (1 - confidence) / 2
-    quantile = float(stdtrit(n - 1, (1 + confidence) / 2))
-    return quantile * deviation / math.sqrt(n)
+    return float(stdtrit(freedom, (1 + confidence) / 2))

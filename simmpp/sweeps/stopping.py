@@ -26,7 +26,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from itertools import islice
+from itertools import chain, islice
 from statistics import fmean
 from typing import TYPE_CHECKING
 
@@ -46,24 +46,16 @@ GROWTH = 2
 
 def seeds_in_order(given: Sequence[int], count: int) -> list[int]:
     """The first ``count`` seeds: those given, then the integers that follow the last of them."""
-    return list(islice(_endless(given), count))
-
-
-def _endless(given: Sequence[int]) -> Iterable[int]:
-    yield from given
-    seed, taken = given[-1], set(given)
-    while True:
-        seed = seed + 1 if seed < MOST_SEED else 0
-        if seed not in taken:
-            yield seed
+    taken = set(given)
+    all_seeds = chain(range(given[-1] + 1, MOST_SEED + 1), range(MOST_SEED + 1))
+    following = (seed for seed in all_seeds if seed not in taken)
+    return list(islice(chain(given, following), count))
 
 
 def first_seeds(settings: Settings) -> list[int]:
     """The seeds that every point has."""
-    given = settings.seeds
-    if settings.tolerance is None:
-        return list(given)
-    return seeds_in_order(given, max(FEWEST, len(given)))
+    least = 1 if settings.tolerance is None else FEWEST
+    return seeds_in_order(settings.seeds, max(least, len(settings.seeds)))
 
 
 def seeds_wanted(

@@ -43,15 +43,12 @@ def task_of(point: GridPoint, digest: str) -> Task:
     if settings.method == SIMULATE and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = POLICIES[policy.name].all_resident
-    rules = config.placement_rules
-    if everywhere:
-        rules = PlacementRules(pixels=rules.pixels)
+    rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
     is_drawn = METHODS[settings.method].is_placed and draws(memory, rules)
     seed = point.seed if is_drawn else 0
-    machine = asdict(replace(config.machine_for(config.processors), sources={}))
-    for label in ("name", "sources"):
-        del machine[label]
+    constants = asdict(replace(config.machine_for(config.processors), sources={}))
+    machine = {name: value for name, value in constants.items() if name not in ("name", "sources")}
     held = {} if everywhere else asdict(memory)  # {}: unlike any fraction's
     place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(

@@ -15,8 +15,6 @@ from functools import cache
 from threading import Lock
 from typing import Generic, TypeVar
 
-import numpy as np
-
 from simmpp.common.compiled import compiled_by_one
 from simmpp.common.errors import SimmppError
 from simmpp.common.modules import ENGINE
@@ -24,6 +22,7 @@ from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
 from simmpp.methods.case import Case
 from simmpp.methods.table import METHODS, Method
+from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
@@ -32,7 +31,7 @@ from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
-from simmpp.workload.workload import SPHERE, Workload, frozen
+from simmpp.workload.workload import Workload
 
 Kind = TypeVar("Kind")
 
@@ -94,7 +93,7 @@ def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
     """The placement and the seconds that drawing it took."""
     began, config = now(), task.config
     placement = place(
-        case.workload, case.machine.processors, config.memory, config.placement_rules, task.seed
+        case.workload, case.machine.processors, config.memory, config.settings.placement, task.seed
     )
     return placement, now() - began
 
@@ -174,36 +173,16 @@ class Kept(Generic[Kind]):
 _workloads: Kept[Workload] = Kept(2)
 _placements: Kept[tuple[Placement, Seconds]] = Kept(4)
 
-PROCESSORS = N_OBJECTS = 2
-"""Of the simulation that is only there to have compiled code loaded, or made, before any is timed.
-"""
-
 
 @cache
 def warm_up(engine: str) -> None:
-    """Simulate the smallest machine that sends messages, once per process."""
-    workload = frozen(_WORKLOAD)  # as what is traced: numba has code of its own for other arrays
-    placement = place(workload, PROCESSORS, Memory(), PlacementRules(), seed=0)
+    """Simulate the smallest machine that sends messages, once per process.
+
+    It is only there to have compiled code loaded, or made, before any task is timed.
+    """
+    # with this seed each ray starts at one PE and needs the object of the other
+    workload, processors = synthetic(rays=2, steps=1, objects=2, seed=2), 2
+    placement = place(workload, processors, Memory(), PlacementRules(), seed=0)
     policy = PolicyParameters("concurrent")
     with compiled_by_one(ENGINE):
-        simulate(workload, machine(processors=PROCESSORS), placement, policy, engine=engine)
-
-
-_WORKLOAD = Workload(
-    name="two rays",
-    digest="",
-    picture=(1, 2),
-    kinds=np.zeros(2, np.uint8),
-    parents=np.full(2, -1, np.int32),
-    child_offsets=np.full(3, 2, np.int32),
-    pixels=np.arange(2, dtype=np.int32),
-    hits=np.array([1, 0], np.int32),
-    hit_distances=np.ones(2),
-    itinerary_offsets=np.arange(3),
-    itinerary_objects=np.array([1, 0], np.int32),
-    object_kinds=np.full(N_OBJECTS, SPHERE, np.uint8),
-    object_triangles=np.zeros(N_OBJECTS, np.int32),
-    object_bytes=np.full(N_OBJECTS, 100),
-    object_centroids=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]),
-)
-"""Each ray starts at one PE and needs the object of the other."""
+        simulate(workload, machine(processors=processors), placement, policy, engine=engine)

@@ -105,17 +105,17 @@ class SceneSettings(Strict):
     """What is rendered: one of SOURCES. Text such as ``mountain:5`` is short for it."""
 
     spd: Annotated[str, *one_of(*known_names())] | None = None
-    """a scene of the Standard Procedural Databases (Haines 1987)"""
+    """A scene of the Standard Procedural Databases (Haines 1987)."""
     size: Annotated[int, *only(_is_size, Expect(SIZE))] | None = None
-    """size of that scene; the SPD's own when not given"""
+    """Size of that scene; the SPD's own when not given."""
     nff: Text | None = None
-    """an NFF file, relative to the configuration's folder"""
+    """An NFF file, relative to the configuration's folder."""
     mesh: Text | None = None
-    """a mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)"""
+    """A mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)."""
     objects: Objects | None = None
-    """how a mesh is cut into objects; components when not given"""
+    """How a mesh is cut into objects; components when not given."""
     workload: Text | None = None
-    """rays of another renderer, in Parquet or npz, in place of a scene"""
+    """Rays of another renderer, in Parquet or npz, in place of a scene."""
 
     @field_validator("size")
     @classmethod

@@ -7,7 +7,7 @@ from pathlib import Path
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config
 from simmpp.model.analytical import Rays, rays_of
-from simmpp.model.border import claims
+from simmpp.model.border import border_terms, claims
 from simmpp.model.costs import Costs, costs_of
 from simmpp.studies.nebel98.figure2_data import (
     ANALYTICAL,
@@ -51,9 +51,7 @@ def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Ver
 
 def _by(costs: Costs, rays: Rays) -> str:
     """The formula of the border (see ``model.border``) with this machine's and scene's numbers."""
-    asking = costs.pack_request + costs.unpack_request + costs.pack_object + costs.unpack_object
-    saved = 2 * costs.startup + asking - costs.pack_ray - costs.unpack_ray
-    message = costs.startup + costs.pack_message + costs.unpack_message
+    message, saved = border_terms(costs)
     return (
         f"border x = 1 - nb (nb - 1) M / (n S): M = {format_ps(round(message))} per message of "
         f"rays, S = {format_ps(round(saved))} saved per ray that is sent and not served, "

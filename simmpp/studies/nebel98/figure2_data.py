@@ -117,7 +117,7 @@ def _measured(config: Config, workload: Workload, grid: Grid) -> Makespans:
         for column, x in enumerate(grid.fractions):
             memory = replace(config.memory, fraction=x, bytes=None)
             seed = config.settings.seeds[0]
-            placement = place(workload, nb, memory, config.placement_rules, seed)
+            placement = place(workload, nb, memory, config.settings.placement, seed)
             for which, dataflow in enumerate(DATAFLOWS):
                 times[which, row, column] = measured(
                     workload, machine, placement, dataflow

@@ -30,8 +30,8 @@ def test_everything_but_the_scene_has_a_default() -> None:
     assert config.scene_spec == {"spd": "mountain", "size": 5}
     assert config.picture == Picture()
     assert config.memory == Memory()
-    assert config.placement_rules == PlacementRules()
-    assert config.policies == (PolicyParameters("concurrent"),)
+    assert config.settings.placement == PlacementRules()
+    assert config.settings.policy == (PolicyParameters("concurrent"),)
     assert config.machine_for(64).name == "t3e"
     settings = config.settings
     assert (settings.processors, settings.seeds, settings.tolerance) == (64, (0,), None)
@@ -60,9 +60,9 @@ sweep: {processors: [8], memory.bytes: [1 MB, 2 MB], policy: [object, [ray, conc
     assert config.scene_spec == {"mesh": "bunny.glb", "objects": {"clusters": 64}}
     assert config.picture == Picture(9, "corners", 3, shadows=False, refraction=False)
     assert config.memory == Memory(bytes=64_000_000, residents="nearest", transient=3)
-    assert config.placement_rules == PlacementRules("morton", "tiles")
+    assert config.settings.placement == PlacementRules("morton", "tiles")
     assert config.machine_for(8).test.cone_ps == 1_000_000
-    assert config.policies[1] == PolicyParameters(
+    assert config.settings.policy[1] == PolicyParameters(
         "concurrent", "eager", 100, 1, 2, "piggyback", 5 * 10**9, merge_requests=False
     )
     assert config.settings.tolerance == Fraction(1, 50)
@@ -102,7 +102,10 @@ def test_set_writes_short_forms_out() -> None:
         "scene.size=2",
         "machine.test.sphere=1 us",
     )
-    assert [(each.name, each.batch) for each in config.policies] == [("object", 7), ("ray", 7)]
+    assert [(each.name, each.batch) for each in config.settings.policy] == [
+        ("object", 7),
+        ("ray", 7),
+    ]
     assert config.scene_spec == {"spd": "rings", "size": 2}
     test = config.machine_for(64).test
     assert (test.sphere_ps, test.cone_ps) == (1_000_000, 2_000_000)

@@ -6,12 +6,39 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.common.errors import ConfigError
-from simmpp.model.analytical import analytical, geometric, grouped, imbalances, permanent
-from simmpp.model.border import border_without_imbalance, borders, claims
+from simmpp.model.analytical import Rays, analytical, grouped, imbalances
+from simmpp.model.border import border_terms, borders, claims
 from simmpp.model.costs import Costs
 
 T3E = Costs(4e6, 10e6, 20e6, 31e3, 31e3, 5e5, 5e5, 5e5, 5e5, 6e6, 2e5, 1e5)
 PLAIN = Costs(ray=4.0, sending=10.0, receipt=20.0, pack_object=1.0, pack_ray=0.5)
+
+
+def permanent(rays: float, steps: int) -> Rays:
+    """``rays`` that all need ``steps`` tests: a permanent regime that ends at once."""
+    ended = np.zeros(steps)
+    ended[-1] = rays
+    return Rays(np.full(steps, float(rays)), ended, np.ones(steps))
+
+
+def geometric(rays: float, mean_steps: float, least: float = 0.5) -> Rays:
+    """Rays that end after each step with probability 1 / ``mean_steps``: decay from the start.
+
+    The series is cut where fewer than ``least`` rays are left.
+    """
+    stays = 1.0 - 1.0 / mean_steps
+    last = int(np.log(least / rays) / np.log(stays)) if stays > 0 and least < rays else 0
+    tests = np.asarray(rays * stays ** np.arange(last + 1), np.float64)
+    return Rays(tests, tests - np.append(tests[1:], 0.0), np.ones(last + 1))
+
+
+def border_without_imbalance(costs: Costs, processors: np.ndarray, rays: Rays) -> np.ndarray:
+    """The x at which TC = TO, with zeta = 0: (B,), below 0 where object dataflow always wins."""
+    message, saved = border_terms(costs)
+    if saved <= 0:
+        return np.full(len(processors), -np.inf)
+    nb = np.asarray(processors, np.float64)
+    return 1.0 - nb * (nb - 1) * message / (rays.mean_tests * saved)
 
 
 def transcribed(

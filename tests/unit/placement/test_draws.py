@@ -31,7 +31,7 @@ def test_only_what_is_drawn_depends_on_the_seed(
             "placement": {"owners": owners, "pixels": pixels},
         }
     )
-    workload, rules = workload_of(config), config.placement_rules
+    workload, rules = workload_of(config), config.settings.placement
     one, other = (contents(place(workload, 4, config.memory, rules, seed)) for seed in (0, 1))
     assert (one != other) == draws(config.memory, rules)
 
@@ -40,7 +40,7 @@ def test_memory_in_bytes_may_be_drawn() -> None:
     for residents, drawn in (("random", True), ("nearest", False)):
         memory = {"bytes": "1 kB", "residents": residents}
         config = config_from_mapping({"scene": "tetra:2", "memory": memory})
-        assert draws(config.memory, config.placement_rules) == drawn
+        assert draws(config.memory, config.settings.placement) == drawn
 
 
 def contents(placement: Placement) -> tuple[object, ...]:
