@@ -10,17 +10,9 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from simmpp.commands.options import (
-    NamedPath,
-    available_cores,
-    engine_option,
-    examples,
-    folder,
-    set_option,
-    workers_option,
-)
+from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import notice, output, table
+from simmpp.commands.terminal import FAILED, notice, output, table
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
 from simmpp.config.config import Config, load_config
@@ -37,7 +29,6 @@ from simmpp.studies.check.baseline import (
 from simmpp.studies.check.moves import Move, lines, moves, moves_by_measure
 from simmpp.sweeps.sweep import run_sweep
 
-MOVED = 1
 MOVES_SHOWN = 25
 """Lines of each table."""
 MOVED_CSV, OVERLAY = "moved.csv", "profits"
@@ -45,33 +36,30 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
 
 @click.command(
     "check",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp check configs/ci.yaml --baseline experiments/baselines/ci/profits.csv --out moved",
         "simmpp check configs/ci.yaml --baseline baselines/profits.csv --update",
     ),
 )
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@click.option(
+@options.config_argument
+@options.path(
     "--baseline",
-    "baseline_path",
-    required=True,
+    "A profits.csv with results.csv and run.json beside it.",
     metavar="FILE",
-    type=NamedPath(),
-    help="A profits.csv with results.csv and run.json beside it.",
+    required=True,
 )
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
-@click.option(
+@options.path(
     "--out",
-    type=NamedPath(),
-    help="Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
+    "Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
 )
-@workers_option("Processes, as for sweep.")
+@options.workers("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
-@engine_option("The event loop; it changes no integer.")
-@set_option("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
+@options.engine("The event loop; it changes no integer.")
+@options.set_key("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
 def check_command(
     config_path: Path,
-    baseline_path: Path,
+    baseline: Path,
     update: bool,
     out: Path | None,
     workers: int | None,
@@ -92,14 +80,14 @@ def check_command(
         raise ConfigError("expected --workers or --cluster, got both")
     config = load_config(config_path)
     trial = load_config(config_path, (*overrides, *engine))
-    baseline = None if update else read_baseline(baseline_path, config)
-    target = baseline_folder(baseline_path)
-    folder(out, "--out")
+    before = None if update else read_baseline(baseline, config)
+    target = baseline_folder(baseline)
+    options.folder(out, "--out")
     with TemporaryDirectory(prefix="simmpp-check-") as temporary:
         now = _swept(trial, workers, cluster, Path(temporary))
-        if baseline is None:
-            sys.exit(_update(config, now, Path(temporary), baseline_path, target))
-        sys.exit(_compare(config, baseline, now, Path(temporary), out))
+        if before is None:
+            sys.exit(_update(config, now, Path(temporary), baseline, target))
+        sys.exit(_compare(config, before, now, Path(temporary), out))
 
 
 def _swept(config: Config, workers: int | None, cluster: str | None, into: Path) -> Sweep:
@@ -107,7 +95,7 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
     with progress_of_sweep() as watcher:
         run_sweep(
             config,
-            workers=workers or available_cores(),
+            workers=workers or options.available_cores(),
             cluster=cluster,
             out=into,
             watcher=watcher,
@@ -124,7 +112,7 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
     if out:
         _write(moved, baseline, now, obtained, out)
     click.echo(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")
-    return MOVED if moved else 0
+    return FAILED if moved else 0
 
 
 def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Path) -> int:
@@ -132,7 +120,7 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
     failed = [row for row in now.tables.results if row["error"]]
     if failed:
         notice(f"{len(failed)} rows failed, so the baseline stays as it was: {failed[0]['error']}")
-        return MOVED
+        return FAILED
     try:
         old = read_baseline(named, config)
     except ConfigError as error:

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.commands.options import writable
+from simmpp.commands import options
 from simmpp.common.errors import ConfigError
 from simmpp.engine.record.log import Sink
 from simmpp.policy.parameters import PolicyParameters
@@ -35,7 +35,7 @@ def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
     if path is not None and not path.name.lower().endswith(SUFFIXES):
         expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
         raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
-    writable(path, "--timeline")
+    options.writable(path, "--timeline")
 
 
 class Recorder(Protocol):

@@ -14,6 +14,8 @@ from rich.table import Table
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
+FAILED = 1
+"""Exit code of a command that worked, when what it ran failed, or is not what it should be."""
 TRACER_S, ENGINE_S = 10, 20
 """What compiling takes on a core of 2020: ``tests/bench/bench_first_use.py`` measures it."""
 

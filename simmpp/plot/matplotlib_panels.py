@@ -28,6 +28,7 @@ STYLES: tuple[dict[str, Any], ...] = (
 GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
 STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
 FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
+LEGEND: dict[str, Any] = {"fontsize": 8, "title_fontsize": 8, "handlelength": 3.2}
 FADE = 1.35
 """A band below a level is drawn down to that part of it: others lie deeper."""
 PART_STYLES: tuple[dict[str, Any], ...] = (
@@ -101,14 +102,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 def _draw_legend(axes: Axes, title: str) -> None:
     """A legend with each label once, however many curves have it."""
     handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    axes.legend(
-        handles.values(),
-        handles.keys(),
-        title=title or None,
-        fontsize=8,
-        title_fontsize=8,
-        handlelength=3.2,
-    )
+    axes.legend(handles.values(), handles.keys(), title=title or None, **LEGEND)
 
 
 def _draw_bars(axes: Axes, bars: Bars) -> None:

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from simmpp.common.errors import ConfigError
+from simmpp.report.page.folder import undamaged
 from simmpp.report.page.groups import GROUPS
 
-TOPICS = {
-    "sensitivity": "Sensitivity",
-}
+TOPICS = {"sensitivity": "Sensitivity"}
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
 """Kinds of pictures."""
@@ -87,11 +85,8 @@ def _picture(path: Path) -> EmbeddedPicture:
 
 
 def _table(path: Path) -> CsvTable:
-    try:
-        with open(path, encoding="utf-8", newline="") as file:
-            rows = list(csv.reader(file))
-    except (ValueError, csv.Error) as error:
-        raise ConfigError(f"damaged: {error}", where=str(path)) from None
+    with undamaged(path), open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
     more = len(rows) - 1 - MOST_LINES
     name = f"{path.name}, {MOST_LINES} of {len(rows) - 1} rows" if more > 0 else path.name
     return CsvTable(name, rows[0] if rows else [], rows[1 : MOST_LINES + 1])

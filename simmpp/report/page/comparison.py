@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
@@ -78,6 +76,6 @@ def _figures(sweeps: Difference) -> list[Figure]:
     rows = [*sweeps.after.profits, *sweeps.before.profits]
     if not rows:
         return []
-    axes: Mapping[str, Any] = axes_of(rows, sweeps.after.further)
-    figures = profit_figures(ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked))
-    return list(figures)
+    axes = axes_of(rows, sweeps.after.further)
+    data = ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked)
+    return list(profit_figures(data))

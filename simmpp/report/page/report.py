@@ -129,10 +129,10 @@ def _warning(folder: Folder) -> str:
 def _verdicts(folder: Folder) -> str:
     """How many claims hold, in part, and do not."""
     counts = Counter(claim["holds"] for claim in folder.claims)
-    words = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
+    forms = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
     parts = [
         f"{counts[kind]} {one if counts[kind] == 1 else more}"
-        for kind, (one, more) in words.items()
+        for kind, (one, more) in forms.items()
         if counts[kind]
     ]
     return f"Of {len(folder.claims)} claims: {', '.join(parts)}."

@@ -196,7 +196,7 @@ def _memory(figure: Figure, motion: Motion) -> None:
 
 def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -> None:
     """What pixels cost, how far their rays and objects went, and whose they are."""
-    figure.set_size_inches(13, 3.4) if picture is not None else figure.set_size_inches(10, 3.4)
+    figure.set_size_inches(10 if picture is None else 13, 3.4)
     axes = list(figure.subplots(1, 3 if picture is None else 4))
     if picture is not None:
         rendered = axes.pop(0)
@@ -204,12 +204,12 @@ def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -
         rendered.set_title("picture")
         rendered.set_axis_off()
     maps = {
-        "cost (us)": (motion.pixel_cost_ps / 1e6, AMOUNTS),
-        "links crossed for its rays": (motion.pixel_hops, AMOUNTS),
-        "PE it starts on": (motion.pixel_owner, AMOUNTS),
+        "cost (us)": motion.pixel_cost_ps / 1e6,
+        "links crossed for its rays": motion.pixel_hops,
+        "PE it starts on": motion.pixel_owner,
     }
-    for here, (title, (values, colours)) in zip(axes, maps.items(), strict=True):
-        image = here.imshow(values, cmap=colours, interpolation="nearest")
+    for here, (title, values) in zip(axes, maps.items(), strict=True):
+        image = here.imshow(values, cmap=AMOUNTS, interpolation="nearest")
         here.set_title(f"{motion.title}: {title}" if here is axes[0] else title)
         here.set_axis_off()
         figure.colorbar(image, ax=here, shrink=0.85)

@@ -60,21 +60,11 @@ def _draw_layer(axes: Axes, motion: Motion, z: int, links: Any, loads: Any) -> N
     segments, amounts = _links_of(motion, pes, places)
     used = np.ma.masked_equal(amounts / 1e6, 0)
     axes.add_collection(LineCollection(segments, array=used, cmap=LINKS, norm=links, linewidths=3))
-    axes.scatter(
-        places[:, 0],
-        places[:, 1],
-        c=motion.load[pes],
-        cmap=LOADS,
-        norm=loads,
-        s=190,
-        ec="0.3",
-        zorder=2,
-    )
-    for pe, (x, y) in zip(pes, places, strict=True):
-        dark = loads(motion.load[pe]) > 0.6
-        axes.annotate(
-            str(pe), (x, y), ha="center", va="center", fontsize=6, color="w" if dark else "k"
-        )
+    (x, y), load = places.T, motion.load[pes]
+    axes.scatter(x, y, 190, load, cmap=LOADS, norm=loads, edgecolors="0.3", zorder=2)
+    for pe, place in zip(pes, places, strict=True):
+        colour = "w" if loads(motion.load[pe]) > 0.6 else "k"
+        axes.annotate(str(pe), place, ha="center", va="center", fontsize=6, color=colour)
     axes.set(xlim=(-0.7, x_size - 0.3), ylim=(-0.7, y_size - 0.3), aspect="equal")
     axes.set_title(f"z = {z}", fontsize=8)
 
