@@ -30,7 +30,7 @@ LARGE = 10
     help="Simulations of each point at full fidelity, whose mean is the reference.",
 )
 @options.workers("Processes on this machine; 1 disturbs no times.  [default: one for each core]")
-@options.set_key("Set a dotted key; repeatable.")
+@options.setting("Set a dotted key; repeatable.")
 @options.path("--out", "Folder of bench.csv and the figure.  [default: results/NAME-OF-CONFIG]")
 def bench_command(
     config_path: Path,

@@ -19,14 +19,13 @@ from simmpp.config.config import Config, load_config
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.baseline import (
     UPDATE,
-    Sweep,
     baseline_folder,
     read_baseline,
     read_sweep,
     reasons,
     write_baseline,
 )
-from simmpp.studies.check.moves import Move, lines, moves, moves_by_measure
+from simmpp.studies.check.moves import Move, Sweep, lines, moves, moves_by_measure
 from simmpp.sweeps.sweep import run_sweep
 
 MOVES_SHOWN = 25
@@ -56,7 +55,7 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
 @options.workers("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
 @options.engine("The event loop; it changes no integer.")
-@options.set_key("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
+@options.setting("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
 def check_command(
     config_path: Path,
     baseline: Path,
@@ -105,8 +104,8 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
 
 def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: Path | None) -> int:
     """Print what moved and write the artefacts; the exit code."""
-    moved = moves(baseline.tables, now.tables, config.settings.check.tolerances)
-    rows = f"{len(now.tables.results)} rows, {len(now.tables.profits)} points"
+    moved = moves(baseline, now, config.settings.check.tolerances)
+    rows = f"{len(now.results)} rows, {len(now.profits)} points"
     if moved:
         _print(moved, reasons(baseline, now))
     if out:
@@ -117,7 +116,7 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
 
 def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Path) -> int:
     """Write the baseline and say what is new in it; the exit code."""
-    failed = [row for row in now.tables.results if row["error"]]
+    failed = [row for row in now.results if row["error"]]
     if failed:
         notice(f"{len(failed)} rows failed, so the baseline stays as it was: {failed[0]['error']}")
         return FAILED
@@ -127,12 +126,12 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
         if named.exists():
             notice(f"not compared: {error.problem.removesuffix(f': {UPDATE}')}")
     else:
-        moved = moves(old.tables, now.tables, {})
+        moved = moves(old, now, {})
         if moved:
             _print(moved, reasons(old, now))
         click.echo(f"check: {len(moved) or 'no'} values of the baseline moved")
     write_baseline(obtained, target)
-    click.echo(f"check: baseline of {len(now.tables.results)} rows in {target}")
+    click.echo(f"check: baseline of {len(now.results)} rows in {target}")
     return 0
 
 
@@ -170,4 +169,4 @@ def _write(moved: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, o
     cells = lines(moved)
     columns = list(cells[0]) if cells else ["measure", "baseline", "now", "change", "allowed"]
     write_csv(cells, columns, out / MOVED_CSV)
-    overlay(baseline.tables.profits, now.tables.profits, out / OVERLAY)
+    overlay(baseline.profits, now.profits, out / OVERLAY)

@@ -8,9 +8,9 @@ import click
 
 from simmpp.commands import options
 from simmpp.commands.terminal import output, table
-from simmpp.report.page.comparison import reasons, verdict, write_comparison
+from simmpp.report.page.comparison import causes, outcome, write_comparison
 from simmpp.report.page.difference import (
-    Difference,
+    SideBySide,
     changes_by_measure,
     difference_of,
     line,
@@ -40,15 +40,15 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
     before, after = read_folder(before_path, "BEFORE"), read_folder(after_path, "AFTER")
     difference = difference_of(before, after)
     _print(difference)
-    for reason in reasons(before, after):
+    for reason in causes(before, after):
         click.echo(reason)
     if out is not None:
         write_comparison(before, after, difference, out)
         click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
-    click.echo(f"compare: {verdict(difference)}")
+    click.echo(f"compare: {outcome(difference)}")
 
 
-def _print(difference: Difference) -> None:
+def _print(difference: SideBySide) -> None:
     console = output()
     console.print(table(changes_by_measure(difference)))
     console.print()

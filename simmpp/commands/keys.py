@@ -54,7 +54,7 @@ def _print_one(key: Key) -> None:
 def _constants(key: Key) -> Iterator[tuple[str, str, str]]:
     """The value and the source of a machine's constant in each preset, the default one first."""
     constant = key.name.removeprefix(MACHINE)
-    for name in sorted(preset_names(), key=lambda each: each != DEFAULT_PRESET):
+    for name in sorted(preset_names(), key=lambda preset: preset != DEFAULT_PRESET):
         preset = load_preset(name)
         written = {k: key.expect.write(number) for k, number in preset.constants.flat().items()}
         written |= preset.texts

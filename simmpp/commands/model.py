@@ -35,7 +35,7 @@ from simmpp.workload.workload import Workload
     ),
 )
 @options.config_argument
-@options.set_key("Set a dotted key; method=analytical-measured feeds the model with measured r.")
+@options.setting("Set a dotted key; method=analytical-measured feeds the model with measured r.")
 @click.option(
     "--ratio",
     "ratio_texts",
@@ -46,7 +46,7 @@ from simmpp.workload.workload import Workload
 )
 @click.option(
     "--imbalance",
-    type=options.Number("a number from 0 to 1", 0, 1),
+    type=options.Real("a number from 0 to 1", 0, 1),
     default=0.0,
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",

@@ -31,7 +31,7 @@ class Whole(click.IntRange):
             self.fail(f"value {value!r}: {expected}", param, ctx)
 
 
-class Number(click.FloatRange):
+class Real(click.FloatRange):
     """A number between bounds; NaN, which is within any, is refused, and so is infinity."""
 
     def __init__(self, expected: str, low: float, high: float | None = None, **ends: bool) -> None:
@@ -81,7 +81,7 @@ def path(name: str, help_text: str, **settings: Any) -> Callable[[Any], Any]:
     return click.option(name, type=NamedPath(), help=help_text, **settings)
 
 
-def set_key(help_text: str) -> Callable[[Any], Any]:
+def setting(help_text: str) -> Callable[[Any], Any]:
     """``--set KEY=VALUE``, which the command gets as ``overrides``."""
     return click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=help_text)
 

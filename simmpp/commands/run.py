@@ -17,7 +17,7 @@ from simmpp.commands.tracing import workload
 from simmpp.config.config import Config, load_config
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import row, write_rows
+from simmpp.run.rows import RECORD, RESULTS, row, write_rows
 from simmpp.run.summary import summary
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
@@ -35,7 +35,7 @@ from simmpp.workload.trace.verify import verify
 )
 @options.config_argument
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.set_key("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
+@options.setting("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
 @options.path("--out", "Folder for run.json and results.csv.")
 @options.path("--picture", "Write the picture as PNG.")
 @options.path(
@@ -106,7 +106,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             _simulate(point, runs, recorders, record_tests=verify)
     finally:
         if out and runs:
-            _write(point, runs, out)
+            write_record(record_of_run(point, runs), out / RECORD)
+            write_rows([row(point, run) for run in runs], out / RESULTS)
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
@@ -141,11 +142,6 @@ def _simulate(
                 recorder.end(run)
 
 
-def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    write_record(record_of_run(point, runs), out / "run.json")
-    write_rows([row(point, run) for run in runs], out / "results.csv")
-
-
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     scene = scene_of(point.config.ray_source, "--picture")()
@@ -157,14 +153,9 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     scene, failed = scene_of(point.config.ray_source, "--verify")(), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
-        rays, objects = run.result.tested_rays, run.result.tested_objects
-        problem = verify(
-            scene,
-            point.config.picture,
-            point.workload,
-            nothing if rays is None else rays,
-            nothing if objects is None else objects,
-        )
+        tests = (run.result.tested_rays, run.result.tested_objects)
+        rays, objects = (nothing if column is None else column for column in tests)
+        problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         click.echo(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None

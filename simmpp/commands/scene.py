@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from simmpp.commands import options
-from simmpp.commands.terminal import output, texts
+from simmpp.commands.terminal import OBJECTS_SHOWN, output, texts
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
 from simmpp.scene.nff import write_nff
@@ -17,7 +17,7 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
 
 PREVIEW_RESOLUTION = 512
-OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10
+MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 10
 
 
 @click.command(
@@ -106,8 +106,8 @@ def _cell(value: object) -> str:
 def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
     # Only --preview traces, which needs numba.
-    from simmpp.commands.tracing import traced
+    from simmpp.commands.tracing import workload_of_scene
     from simmpp.workload.trace.shading import render, save_png
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)
-    save_png(render(scene, picture, traced(scene, picture)), path)
+    save_png(render(scene, picture, workload_of_scene(scene, picture)), path)

@@ -23,13 +23,13 @@ from simmpp.sweeps.executors import start_server
 @options.workers("Processes on this machine; 1 works in this one.  [default: one for each core]")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.set_key(
+@options.setting(
     "Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable."
 )
 @click.option(
     "--timeout",
     "timeout_s",
-    type=options.Number("a finite number of seconds above 0", 0, min_open=True),
+    type=options.Real("a finite number of seconds above 0", 0, min_open=True),
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )

@@ -14,6 +14,8 @@ from rich.table import Table
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
+OBJECTS_SHOWN = 20
+"""Lines of a list of objects, unless all are asked for."""
 FAILED = 1
 """Exit code of a command that worked, when what it ran failed, or is not what it should be."""
 TRACER_S, ENGINE_S = 10, 20

@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from simmpp.commands import options
-from simmpp.commands.terminal import output, table
+from simmpp.commands.terminal import OBJECTS_SHOWN, output, table
 from simmpp.commands.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
@@ -18,7 +18,7 @@ from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
 from simmpp.workload.exchange.exchange import export_workload
 from simmpp.workload.workload import Workload
 
-OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
+DEPTHS_SHOWN = 12
 
 
 @click.command(
@@ -30,7 +30,7 @@ OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
 )
 @click.argument("spec")
 @options.path("--export", "Write it as .parquet or .npz.")
-@options.set_key(
+@options.setting(
     "Set a dotted key of the configuration, such as picture.resolution=128; repeatable."
 )
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")

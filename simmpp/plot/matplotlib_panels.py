@@ -39,7 +39,7 @@ PART_STYLES: tuple[dict[str, Any], ...] = (
 )
 """Of bars, bottom first: they differ in lightness too."""
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
-FEW = 4
+MOST_IN_TWOS = 4
 """Panels up to which two are side by side; of more it is three."""
 SETTINGS: Any = {
     "svg.hashsalt": "simmpp",
@@ -53,7 +53,7 @@ SETTINGS: Any = {
 
 def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
     """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
-    across = min(len(panels), 2 if len(panels) <= FEW else 3)
+    across = min(len(panels), 2 if len(panels) <= MOST_IN_TWOS else 3)
     down = -(-len(panels) // across)
     with matplotlib.rc_context(SETTINGS):
         figure = Figure(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")

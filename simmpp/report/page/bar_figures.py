@@ -11,7 +11,7 @@ from simmpp.report.page.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
 STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")
-HEADROOM = 1.02
+BAR_HEADROOM = 1.02
 """Of a panel above its highest bar, as a factor."""
 
 
@@ -55,7 +55,7 @@ def _figure(
             for panel, numbered in panels.items()
         }
         sums = [sum(heights.values()) for bars in drawn.values() for heights in bars.values()]
-        y = Scale(label, limits=(0, max(sums, default=1) * HEADROOM))
+        y = Scale(label, limits=(0, max(sums, default=1) * BAR_HEADROOM))
         bars_of[plate] = []
         for panel in sorted(panels, key=lambda panel: styles.get(panel, 0)):
             numbers = list(drawn[panel])

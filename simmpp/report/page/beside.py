@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from simmpp.report.page.folder import undamaged
-from simmpp.report.page.groups import GROUPS
+from simmpp.report.page.groups import FIGURE_GROUPS
 
 TOPICS = {"sensitivity": "Sensitivity"}
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
 """Kinds of pictures."""
-OWN = tuple(stem for group in GROUPS for stem in group.stems)
+OWN = tuple(stem for group in FIGURE_GROUPS for stem in group.stems)
 """A report's own figures, which may be those of an earlier one."""
 FIGURES_FOLDER = "figures"
 """Where a report writes its figures, and `run --figures` may have written others."""

@@ -20,8 +20,8 @@ from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
 
 BLUE, VERMILION, GREEN, _, ORANGE, *_ = (style["color"] for style in STYLES)
-COMPUTE_COLOUR, COMMUNICATION_COLOUR, WAITING_COLOUR = BLUE, ORANGE, "#EDEDED"
-"""Of Okabe and Ito (2008); waiting is light: both colours stand out from it in print too."""
+ACTIVITIES = {"compute_ps": BLUE, "communication_ps": ORANGE, "waiting_ps": "#EDEDED"}
+"""Colours of Okabe and Ito (2008); waiting is light: both stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
 MS = 1e-9
@@ -65,7 +65,7 @@ def _activity(figure: Figure, motion: Motion) -> None:
     when.set_title(f"{motion.title}: what every PE does (makespan {format_ps(motion.makespan_ps)})")
     when.yaxis.set_major_locator(MaxNLocator(integer=True))
     left = np.zeros(nb)
-    for name, color in _ACTIVITIES.items():
+    for name, color in ACTIVITIES.items():
         percent = 100 * getattr(motion, name).sum(axis=1) / max(motion.makespan_ps, 1)
         label = name.removesuffix("_ps")
         shares.barh(np.arange(nb), percent, 1, left, color=color, label=label, linewidth=0)
@@ -74,20 +74,13 @@ def _activity(figure: Figure, motion: Motion) -> None:
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
 
 
-_ACTIVITIES = {
-    "compute_ps": COMPUTE_COLOUR,
-    "communication_ps": COMMUNICATION_COLOUR,
-    "waiting_ps": WAITING_COLOUR,
-}
-
-
 def _mixed(motion: Motion) -> NDArray[np.float64]:
     """Colours of the three activities by their share of each bin: (nb, bins, 3) float64."""
     whole_ps = np.maximum(np.diff(motion.times_ps), 1)[None, :, None]
     return np.asarray(
         sum(
             getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
-            for name, color in _ACTIVITIES.items()
+            for name, color in ACTIVITIES.items()
         ),
         np.float64,
     ).clip(0, 1)

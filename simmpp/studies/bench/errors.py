@@ -24,7 +24,7 @@ QUANTITIES = {"makespan": "makespan_ps", "messages": "messages", **MEASURES}
 """What is compared, and the column that it is made of."""
 CPU = "cpu_s"
 """What rows of a bench tell besides their columns: seconds of the processor."""
-MEASURED = tuple(name + end for name in QUANTITIES for end in ("_error", "_resolution"))
+ERROR_COLUMNS = tuple(name + end for name in QUANTITIES for end in ("_error", "_resolution"))
 
 
 Runs = Mapping[str, Mapping[str, Seeds]]
@@ -34,7 +34,7 @@ Runs = Mapping[str, Mapping[str, Seeds]]
 def bench_columns(keys: Sequence[str]) -> tuple[str, ...]:
     """The columns of ``bench.csv``."""
     about = ("policy", "method", "seeds", "groups", "reference_seeds", "trace_s", CPU)
-    return (*keys, *about, *MEASURED)
+    return (*keys, *about, *ERROR_COLUMNS)
 
 
 def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, float]) -> list[Row]:

@@ -52,7 +52,7 @@ def ray_over_object(measured: RowIndex) -> Values:
     return {at: mean(measured.ray_over_object(*at)) for at in points(measured)}
 
 
-def profits(measured: RowIndex, column: str, policy: str = CONCURRENT) -> Values:
+def mean_profits(measured: RowIndex, column: str, policy: str = CONCURRENT) -> Values:
     """Object dataflow over a policy: the time profit (of MAKESPAN) or the message profit."""
     return {at: mean(measured.profit(column, *at, policy)) for at in points(measured)}
 

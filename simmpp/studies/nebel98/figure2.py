@@ -14,7 +14,6 @@ from simmpp.model.costs import Costs, costs_of
 from simmpp.studies.nebel98.figure2_data import (
     ANALYTICAL,
     DEFAULT_RATIOS,
-    MODEL_COLUMNS,
     model_grid,
     model_times,
     rows_of,
@@ -58,7 +57,7 @@ def write_figure2(
     ratios: Sequence[tuple[str, float]] = DEFAULT_RATIOS,
 ) -> list[Path]:
     """Write ``figure2.csv`` and the maps for several cost ratios; returns the paths of these."""
-    write_csv(rows, MODEL_COLUMNS, out / "figure2.csv")
+    write_csv(rows, list(rows[0]), out / "figure2.csv")
     return draw_figure2(winner_maps(config, workload, ratios), heading, out)
 
 

@@ -21,17 +21,6 @@ from simmpp.placement.place import place
 from simmpp.workload.workload import Workload
 
 ANALYTICAL, MEASURED = "analytical", "analytical-measured"
-MODEL_COLUMNS = (
-    "scene",
-    "processors",
-    "fraction",
-    "method",
-    "imbalance",
-    "object_ps",
-    "ray_ps",
-    "ray_over_object",
-    "winner",
-)
 WINNERS = {RAY: "ray", OBJECT: "object", TIE: "tie"}
 DEFAULT_RATIOS = (("packing", 100.0), ("object", 100.0), ("test", 10.0))
 """Maps beside the machine's own: a group of operations, and how many times as long it takes."""
