@@ -71,8 +71,7 @@ def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
 
 def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink | None:
     """What hands the event log of a policy's run to all who want it."""
-    begun = [recorder.begin(policy) for recorder in recorders]
-    sinks = [sink for sink in begun if sink is not None]
+    sinks = [sink for recorder in recorders if (sink := recorder.begin(policy)) is not None]
 
     def hand_on(rows: NDArray[np.void]) -> None:
         for sink in sinks:

@@ -77,13 +77,11 @@ def _activity(figure: Figure, motion: Motion) -> None:
 def _mixed(motion: Motion) -> NDArray[np.float64]:
     """Colours of the three activities by their share of each bin: (nb, bins, 3) float64."""
     whole_ps = np.maximum(np.diff(motion.times_ps), 1)[None, :, None]
-    return np.asarray(
-        sum(
-            getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
-            for name, color in ACTIVITIES.items()
-        ),
-        np.float64,
-    ).clip(0, 1)
+    colours = [
+        getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
+        for name, color in ACTIVITIES.items()
+    ]
+    return np.sum(colours, axis=0, dtype=np.float64).clip(0, 1)
 
 
 def _progress(figure: Figure, motion: Motion) -> None:

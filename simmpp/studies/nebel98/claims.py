@@ -31,7 +31,7 @@ def f3a(evidence: Evidence) -> Verdict:
         "F3a",
         "figure 3 (Tetrahedron5): object dataflow best where the scene is lightly partitioned",
         f"T(ray)/T(object) {span(lightly.values())} at 0.8 <= x < 1",
-        criteria(lightly, evidence.figure3, CLASSICAL, above=1),
+        criteria(lightly, evidence.figure3, CLASSICAL, low=1, strict=True),
     )
 
 
@@ -73,7 +73,7 @@ def t1(evidence: Evidence) -> Verdict:
         "T1",
         "section 4.2.2 (64 PEs): object dataflow is more efficient than ray dataflow",
         f"T(ray)/T(object) {span(ratios.values())}",
-        criteria(ratios, evidence.figure4, CLASSICAL, above=1),
+        criteria(ratios, evidence.figure4, CLASSICAL, low=1, strict=True),
     )
 
 

@@ -64,11 +64,9 @@ def criteria(
     low: float = -math.inf,
     high: float = math.inf,
     *,
-    above: float | None = None,
+    strict: bool = False,
 ) -> list[Criterion]:
-    """A criterion for each value, which must lie from low to high, or strictly above."""
-    strict = above is not None
-    low = low if above is None else above
+    """A criterion for each value, which must lie from low to high, or strictly in between."""
     return [
         Criterion(str(at), value, low, high, strict, _accounts(measured, at, policies))
         for at, value in values.items()

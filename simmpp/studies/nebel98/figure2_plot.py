@@ -44,7 +44,7 @@ def draw_figure2(panels: Sequence[WinnerMap], heading: str, folder: Path) -> lis
     figure.legend(handles=_legend(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     paths = [folder / "figure2.png", folder / "figure2.svg"]
     with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
-        # Not plot's save: it keeps the PNG's layout for the SVG, whose bytes were made without that.
+        # Not plot's save: it draws the SVG with the PNG's layout, which would be other bytes.
         figure.savefig(paths[0], dpi=DOTS_PER_INCH)
         figure.savefig(paths[1], dpi=DOTS_PER_INCH, metadata={"Date": None})
     return paths
