@@ -43,22 +43,24 @@ def _is_terminal(stream: TextIO | None) -> bool:
 
 def table(rows: Sequence[Mapping[str, object]]) -> Table:
     """Rows with the same keys as a table; numbers to the right."""
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    columns = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name, value in (rows[0] if rows else {}).items():
-        shown.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
+        columns.add_column(
+            name, justify="left" if isinstance(value, str) else "right", no_wrap=True
+        )
     for row in rows:
-        shown.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
-    return shown
+        columns.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
+    return columns
 
 
 def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Table:
     """Rows of texts as a table; only columns after the first ``whole`` are broken into lines."""
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    columns = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for number, name in enumerate(names):
-        shown.add_column(name, no_wrap=number < whole)
+        columns.add_column(name, no_wrap=number < whole)
     for row in rows:
-        shown.add_row(*row)
-    return shown
+        columns.add_row(*row)
+    return columns
 
 
 def notice(text: str) -> None:

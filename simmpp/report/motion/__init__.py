@@ -1,1 +1,0 @@
-"""Pictures of one run: who waited, where messages went, what pixels cost."""
