@@ -43,24 +43,22 @@ def _is_terminal(stream: TextIO | None) -> bool:
 
 def table(rows: Sequence[Mapping[str, object]]) -> Table:
     """Rows with the same keys as a table; numbers to the right."""
-    columns = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name, value in (rows[0] if rows else {}).items():
-        columns.add_column(
-            name, justify="left" if isinstance(value, str) else "right", no_wrap=True
-        )
+        grid.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
     for row in rows:
-        columns.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
-    return columns
+        grid.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
+    return grid
 
 
 def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Table:
     """Rows of texts as a table; only columns after the first ``whole`` are broken into lines."""
-    columns = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for number, name in enumerate(names):
-        columns.add_column(name, no_wrap=number < whole)
+        grid.add_column(name, no_wrap=number < whole)
     for row in rows:
-        columns.add_row(*row)
-    return columns
+        grid.add_row(*row)
+    return grid
 
 
 def notice(text: str) -> None:
