@@ -8,43 +8,30 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import (
-    NamedPath,
-    Whole,
-    available_cores,
-    examples,
-    folder,
-    set_option,
-    workers_option,
-)
+from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import announce_compilation, notice, output, table
+from simmpp.commands.terminal import FAILED, announce_compilation, notice, output, table
 from simmpp.config.config import load_config
 from simmpp.studies.bench.bench import bench
 from simmpp.studies.bench.errors import Rung
 
-RUNS_FAILED = 1
 LARGE = 10
 """Error from which on it is told as a factor."""
 
 
-@click.command("bench", epilog=examples("simmpp bench configs/bench.yaml --seeds 16"))
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
+@click.command("bench", epilog=options.examples("simmpp bench configs/bench.yaml --seeds 16"))
+@options.config_argument
 @click.option(
     "--seeds",
-    type=Whole(4, 10_000),
+    type=options.Whole(4, 10_000),
     default=32,
     show_default=True,
     metavar="N",
     help="Simulations of each point at full fidelity, whose mean is the reference.",
 )
-@workers_option("Processes on this machine; 1 disturbs no times.  [default: one for each core]")
-@set_option("Set a dotted key; repeatable.")
-@click.option(
-    "--out",
-    type=NamedPath(),
-    help="Folder of bench.csv and the figure.  [default: results/NAME-OF-CONFIG]",
-)
+@options.workers("Processes on this machine; 1 disturbs no times.  [default: one for each core]")
+@options.setting("Set a dotted key; repeatable.")
+@options.path("--out", "Folder of bench.csv and the figure.  [default: results/NAME-OF-CONFIG]")
 def bench_command(
     config_path: Path,
     seeds: int,
@@ -61,18 +48,22 @@ def bench_command(
     """
     config = load_config(config_path, overrides)
     out = Path("results", config_path.stem) if out is None else out
-    folder(out, "--out")
+    options.folder(out, "--out")
     announce_compilation()
     with progress_of_sweep() as watcher:
         outcome = bench(
-            config, seeds=seeds, out=out, workers=workers or available_cores(), watcher=watcher
+            config,
+            seeds=seeds,
+            out=out,
+            workers=workers or options.available_cores(),
+            watcher=watcher,
         )
     _print(outcome.rungs)
     for path in outcome.files:
         click.echo(f"wrote {path}")
     for error in sorted(set(outcome.failed)):
         notice(f"{outcome.failed.count(error)} runs failed: {error}")
-    sys.exit(RUNS_FAILED if outcome.failed else 0)
+    sys.exit(FAILED if outcome.failed else 0)
 
 
 def _print(rungs: Sequence[Rung]) -> None:

@@ -10,34 +10,24 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from simmpp.commands.options import (
-    NamedPath,
-    available_cores,
-    engine_option,
-    examples,
-    folder,
-    set_option,
-    workers_option,
-)
+from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import notice, output, table
+from simmpp.commands.terminal import FAILED, notice, output, table
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
 from simmpp.config.config import Config, load_config
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.baseline import (
     UPDATE,
-    Sweep,
     baseline_folder,
     read_baseline,
     read_sweep,
     reasons,
     write_baseline,
 )
-from simmpp.studies.check.moves import Move, lines, moves, moves_by_measure
+from simmpp.studies.check.moves import Move, Sweep, lines, moves, moves_by_measure
 from simmpp.sweeps.sweep import run_sweep
 
-MOVED = 1
 MOVES_SHOWN = 25
 """Lines of each table."""
 MOVED_CSV, OVERLAY = "moved.csv", "profits"
@@ -45,33 +35,30 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
 
 @click.command(
     "check",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp check configs/ci.yaml --baseline experiments/baselines/ci/profits.csv --out moved",
         "simmpp check configs/ci.yaml --baseline baselines/profits.csv --update",
     ),
 )
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@click.option(
+@options.config_argument
+@options.path(
     "--baseline",
-    "baseline_path",
-    required=True,
+    "A profits.csv with results.csv and run.json beside it.",
     metavar="FILE",
-    type=NamedPath(),
-    help="A profits.csv with results.csv and run.json beside it.",
+    required=True,
 )
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
-@click.option(
+@options.path(
     "--out",
-    type=NamedPath(),
-    help="Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
+    "Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
 )
-@workers_option("Processes, as for sweep.")
+@options.workers("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
-@engine_option("The event loop; it changes no integer.")
-@set_option("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
+@options.engine("The event loop; it changes no integer.")
+@options.setting("Set a dotted key: what would move? The baseline stays that of CONFIG as it is.")
 def check_command(
     config_path: Path,
-    baseline_path: Path,
+    baseline: Path,
     update: bool,
     out: Path | None,
     workers: int | None,
@@ -92,14 +79,14 @@ def check_command(
         raise ConfigError("expected --workers or --cluster, got both")
     config = load_config(config_path)
     trial = load_config(config_path, (*overrides, *engine))
-    baseline = None if update else read_baseline(baseline_path, config)
-    target = baseline_folder(baseline_path)
-    folder(out, "--out")
+    before = None if update else read_baseline(baseline, config)
+    target = baseline_folder(baseline)
+    options.folder(out, "--out")
     with TemporaryDirectory(prefix="simmpp-check-") as temporary:
         now = _swept(trial, workers, cluster, Path(temporary))
-        if baseline is None:
-            sys.exit(_update(config, now, Path(temporary), baseline_path, target))
-        sys.exit(_compare(config, baseline, now, Path(temporary), out))
+        if before is None:
+            sys.exit(_update(config, now, Path(temporary), baseline, target))
+        sys.exit(_compare(config, before, now, Path(temporary), out))
 
 
 def _swept(config: Config, workers: int | None, cluster: str | None, into: Path) -> Sweep:
@@ -107,7 +94,7 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
     with progress_of_sweep() as watcher:
         run_sweep(
             config,
-            workers=workers or available_cores(),
+            workers=workers or options.available_cores(),
             cluster=cluster,
             out=into,
             watcher=watcher,
@@ -117,34 +104,34 @@ def _swept(config: Config, workers: int | None, cluster: str | None, into: Path)
 
 def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: Path | None) -> int:
     """Print what moved and write the artefacts; the exit code."""
-    moved = moves(baseline.tables, now.tables, config.settings.check.tolerances)
-    rows = f"{len(now.tables.results)} rows, {len(now.tables.profits)} points"
+    moved = moves(baseline, now, config.settings.check.tolerances)
+    rows = f"{len(now.results)} rows, {len(now.profits)} points"
     if moved:
         _print(moved, reasons(baseline, now))
     if out:
         _write(moved, baseline, now, obtained, out)
     click.echo(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")
-    return MOVED if moved else 0
+    return FAILED if moved else 0
 
 
 def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Path) -> int:
     """Write the baseline and say what is new in it; the exit code."""
-    failed = [row for row in now.tables.results if row["error"]]
+    failed = [row for row in now.results if row["error"]]
     if failed:
         notice(f"{len(failed)} rows failed, so the baseline stays as it was: {failed[0]['error']}")
-        return MOVED
+        return FAILED
     try:
         old = read_baseline(named, config)
     except ConfigError as error:
         if named.exists():
             notice(f"not compared: {error.problem.removesuffix(f': {UPDATE}')}")
     else:
-        moved = moves(old.tables, now.tables, {})
+        moved = moves(old, now, {})
         if moved:
             _print(moved, reasons(old, now))
         click.echo(f"check: {len(moved) or 'no'} values of the baseline moved")
     write_baseline(obtained, target)
-    click.echo(f"check: baseline of {len(now.tables.results)} rows in {target}")
+    click.echo(f"check: baseline of {len(now.results)} rows in {target}")
     return 0
 
 
@@ -182,4 +169,4 @@ def _write(moved: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, o
     cells = lines(moved)
     columns = list(cells[0]) if cells else ["measure", "baseline", "now", "change", "allowed"]
     write_csv(cells, columns, out / MOVED_CSV)
-    overlay(baseline.tables.profits, now.tables.profits, out / OVERLAY)
+    overlay(baseline.profits, now.profits, out / OVERLAY)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import NamedPath, examples, writable
+from simmpp.commands import options
 from simmpp.commands.terminal import output, table
-from simmpp.report.page.comparison import reasons, verdict, write_comparison
+from simmpp.report.page.comparison import causes, outcome, write_comparison
 from simmpp.report.page.difference import (
-    Difference,
+    SideBySide,
     changes_by_measure,
     difference_of,
     line,
@@ -23,11 +23,12 @@ SHOWN = 25
 
 
 @click.command(
-    "compare", epilog=examples("simmpp compare results/before results/after --out difference.html")
+    "compare",
+    epilog=options.examples("simmpp compare results/before results/after --out difference.html"),
 )
-@click.argument("before_path", metavar="BEFORE", type=NamedPath())
-@click.argument("after_path", metavar="AFTER", type=NamedPath())
-@click.option("--out", type=NamedPath(), metavar="FILE.html", help="Write a page with the curves.")
+@click.argument("before_path", metavar="BEFORE", type=options.NamedPath())
+@click.argument("after_path", metavar="AFTER", type=options.NamedPath())
+@options.path("--out", "Write a page with the curves.", metavar="FILE.html")
 def compare_command(before_path: Path, after_path: Path, out: Path | None) -> None:
     """Compare the rows of two folders, point by point.
 
@@ -35,19 +36,19 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
     interval of their ratios. Always exits with 0 (2 for what can't be read): for a verdict in
     continuous integration there is check.
     """
-    writable(out, "--out", ".html")
+    options.writable(out, "--out", ".html")
     before, after = read_folder(before_path, "BEFORE"), read_folder(after_path, "AFTER")
     difference = difference_of(before, after)
     _print(difference)
-    for reason in reasons(before, after):
+    for reason in causes(before, after):
         click.echo(reason)
     if out is not None:
         write_comparison(before, after, difference, out)
         click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
-    click.echo(f"compare: {verdict(difference)}")
+    click.echo(f"compare: {outcome(difference)}")
 
 
-def _print(difference: Difference) -> None:
+def _print(difference: SideBySide) -> None:
     console = output()
     console.print(table(changes_by_measure(difference)))
     console.print()

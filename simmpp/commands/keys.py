@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import click
 
-from simmpp.commands.options import examples
+from simmpp.commands import options
 from simmpp.commands.terminal import output, texts
 from simmpp.config.keys import MACHINE, Key, find_keys, listed_keys
 from simmpp.config.schema import json_schema
@@ -16,7 +16,9 @@ from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
 
 @click.command(
     "keys",
-    epilog=examples("simmpp keys", "simmpp keys machine.send_startup", "simmpp keys --schema"),
+    epilog=options.examples(
+        "simmpp keys", "simmpp keys machine.send_startup", "simmpp keys --schema"
+    ),
 )
 @click.argument("key", required=False)
 @click.option("--schema", is_flag=True, help="Print a JSON schema, for editors, and nothing else.")

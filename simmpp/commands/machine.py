@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import click
 
-from simmpp.commands.options import examples
+from simmpp.commands import options
 from simmpp.commands.terminal import output, texts
 from simmpp.machine.presets import load_preset, preset_names
 from simmpp.machine.torus import LINKS, NO_CONTENTION
 
 
-@click.command("machine", epilog=examples("simmpp machine t3e", "simmpp machine"))
+@click.command("machine", epilog=options.examples("simmpp machine t3e", "simmpp machine"))
 @click.argument("preset", required=False)
 def machine_command(preset: str | None) -> None:
     """Print every constant of a machine with its source.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import NamedPath, Number, examples, folder, set_option
+from simmpp.commands import options
 from simmpp.commands.terminal import notice, output, table
 from simmpp.commands.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
@@ -15,7 +15,7 @@ from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.model.analytical import Makespans, rays_of
 from simmpp.model.border import borders, claims
-from simmpp.model.costs import GROUPS, costs_of
+from simmpp.model.costs import GROUPS
 from simmpp.studies.nebel98.figure2_data import (
     ANALYTICAL,
     DEFAULT_RATIOS,
@@ -23,21 +23,19 @@ from simmpp.studies.nebel98.figure2_data import (
     model_grid,
     model_times,
     rows_of,
-    winner_maps,
-    write_model,
 )
 from simmpp.workload.workload import Workload
 
 
 @click.command(
     "model",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp model configs/sweep.yaml",
         "simmpp model configs/sweep.yaml --ratio packing=10 --out results/model",
     ),
 )
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@set_option("Set a dotted key; method=analytical-measured feeds the model with measured r.")
+@options.config_argument
+@options.setting("Set a dotted key; method=analytical-measured feeds the model with measured r.")
 @click.option(
     "--ratio",
     "ratio_texts",
@@ -48,12 +46,12 @@ from simmpp.workload.workload import Workload
 )
 @click.option(
     "--imbalance",
-    type=Number("a number from 0 to 1", 0, 1),
+    type=options.Real("a number from 0 to 1", 0, 1),
     default=0.0,
     show_default=True,
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",
 )
-@click.option("--out", type=NamedPath(), help="Folder for figure2.csv and figure2.")
+@options.path("--out", "Folder for figure2.csv and figure2.")
 def model_command(
     config_path: Path,
     overrides: tuple[str, ...],
@@ -70,23 +68,28 @@ def model_command(
     ratios, and the border.
     """
     config = load_config(config_path, overrides)
-    folder(out, "--out")
+    options.folder(out, "--out")
     ratios = _ratios(ratio_texts)
     grid = model_grid(config)
     if grid.left_out:
         notice(f"the model takes {', '.join(grid.left_out)} as set outside of the sweep")
     workload = workload_of(config)
     times = model_times(config, workload, grid, imbalance=imbalance)
-    measured = config.settings.method == MEASURED
-    method = MEASURED if measured else ANALYTICAL
-    rows = rows_of(times, workload.name, method, 0.0 if measured else imbalance)
+    method = MEASURED if config.settings.method == MEASURED else ANALYTICAL
+    rows = rows_of(times, workload.name, method, 0.0 if method == MEASURED else imbalance)
     columns = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
     console = output()
-    console.print(_heading(config, workload))
+    console.print(_heading(config, workload, method))
     console.print(table([{name: _cell(name, row[name]) for name in columns} for row in rows]))
     console.print(_conclusion(times))
     if out is not None:
-        _write(config, workload, rows, ratios, out)
+        # Only --out draws, and matplotlib takes half a second.
+        from simmpp.studies.nebel98.figure2 import write_figure2
+
+        machine = config.settings.machine.preset
+        heading = f"Analytical model of Nebel 1998, {workload.name}, {machine}"
+        for path in write_figure2(config, workload, rows, heading, out, ratios):
+            click.echo(f"wrote {path}")
 
 
 def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
@@ -105,13 +108,12 @@ def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
     return tuple(ratios) or DEFAULT_RATIOS
 
 
-def _heading(config: Config, workload: Workload) -> str:
+def _heading(config: Config, workload: Workload, method: str) -> str:
     rays = rays_of(workload)
     return (
         f"{workload.name}: n0 = {workload.n_primaries} rays at the start, {len(rays.tests)} steps, "
         f"{rays.mean_tests:.0f} rays at a step in the mean\n"
-        f"machine {config.settings.machine.preset}, method "
-        f"{'analytical' if config.settings.method == 'simulate' else config.settings.method}\n"
+        f"machine {config.settings.machine.preset}, method {method}\n"
     )
 
 
@@ -128,22 +130,3 @@ def _conclusion(times: Makespans) -> str:
         verdict = "holds" if claim.holds else "does not hold"
         lines.append(f"claim {claim.claim} {verdict}: {claim.simulated}")
     return "\n" + "\n".join(lines or ["no change of winner at any nb"])
-
-
-def _write(
-    config: Config,
-    workload: Workload,
-    rows: list[dict[str, object]],
-    ratios: tuple[tuple[str, float], ...],
-    out: Path,
-) -> None:
-    # Only --out draws, and matplotlib takes half a second.
-    from simmpp.studies.nebel98.figure2_plot import draw_figure2
-
-    write_model(rows, out)
-    costs = costs_of(config.machine_for(config.processors), workload)
-    seed = config.settings.seeds[0]
-    maps = winner_maps(costs, rays_of(workload), model_grid(config), ratios, seed)
-    heading = f"Analytical model of Nebel 1998, {workload.name}, {config.settings.machine.preset}"
-    for path in draw_figure2(maps, heading, out):
-        click.echo(f"wrote {path}")

@@ -31,7 +31,7 @@ class Whole(click.IntRange):
             self.fail(f"value {value!r}: {expected}", param, ctx)
 
 
-class Number(click.FloatRange):
+class Real(click.FloatRange):
     """A number between bounds; NaN, which is within any, is refused, and so is infinity."""
 
     def __init__(self, expected: str, low: float, high: float | None = None, **ends: bool) -> None:
@@ -72,12 +72,21 @@ class Word(click.Choice[str]):
         return f"value {value!r}: expected {' or '.join(self.choices)}"
 
 
-def set_option(help_text: str) -> Callable[[Any], Any]:
+config_argument = click.argument("config_path", metavar="CONFIG", type=NamedPath())
+"""``CONFIG``, which the command gets as ``config_path``."""
+
+
+def path(name: str, help_text: str, **settings: Any) -> Callable[[Any], Any]:
+    """An option that takes a path; ``settings`` are those of click."""
+    return click.option(name, type=NamedPath(), help=help_text, **settings)
+
+
+def setting(help_text: str) -> Callable[[Any], Any]:
     """``--set KEY=VALUE``, which the command gets as ``overrides``."""
     return click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=help_text)
 
 
-def engine_option(help_text: str) -> Callable[[Any], Any]:
+def engine(help_text: str) -> Callable[[Any], Any]:
     """``--engine NAME``, which the command gets as ``engine``, overrides to add to those of set."""
     return click.option(
         "--engine",
@@ -87,7 +96,7 @@ def engine_option(help_text: str) -> Callable[[Any], Any]:
     )
 
 
-def workers_option(help_text: str) -> Callable[[Any], Any]:
+def workers(help_text: str) -> Callable[[Any], Any]:
     """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
     return click.option("--workers", type=Whole(1, 4096), help=help_text)
 

@@ -22,7 +22,7 @@ BEST_S = 2
 """Seconds between two looks for the best policy."""
 
 
-class Count(Watcher):
+class CountingWatcher(Watcher):
     """Counts the simulations of a sweep."""
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
@@ -56,7 +56,7 @@ class Count(Watcher):
         return ", ".join(filter(None, (failed, fastest)))
 
 
-class Lines(Count):
+class LineWatcher(CountingWatcher):
     """A line whenever another tenth of the simulations is done, for files and pipes."""
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
@@ -76,7 +76,7 @@ class Lines(Count):
         notice(", ".join(filter(None, parts)))
 
 
-class Bars(Count):
+class BarWatcher(CountingWatcher):
     """A bar for tracing and one for the simulations."""
 
     def __init__(self, bars: Progress) -> None:
@@ -110,7 +110,7 @@ def progress_of_sweep() -> Iterator[Watcher]:
     """Who tells the user how a sweep gets on."""
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield Lines()
+        yield LineWatcher()
         return
     bars = Progress(
         TextColumn("{task.description}", markup=False),
@@ -122,4 +122,4 @@ def progress_of_sweep() -> Iterator[Watcher]:
         transient=True,
     )
     with bars:
-        yield Bars(bars)
+        yield BarWatcher(bars)

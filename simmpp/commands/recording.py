@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.commands.options import writable
+from simmpp.commands import options
 from simmpp.common.errors import ConfigError
 from simmpp.engine.record.log import Sink
 from simmpp.policy.parameters import PolicyParameters
@@ -35,7 +35,7 @@ def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
     if path is not None and not path.name.lower().endswith(SUFFIXES):
         expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
         raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
-    writable(path, "--timeline")
+    options.writable(path, "--timeline")
 
 
 class Recorder(Protocol):
@@ -71,8 +71,7 @@ def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
 
 def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink | None:
     """What hands the event log of a policy's run to all who want it."""
-    begun = [recorder.begin(policy) for recorder in recorders]
-    sinks = [sink for sink in begun if sink is not None]
+    sinks = [sink for recorder in recorders if (sink := recorder.begin(policy)) is not None]
 
     def hand_on(rows: NDArray[np.void]) -> None:
         for sink in sinks:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import NamedPath, examples, folder
+from simmpp.commands import options
 from simmpp.commands.terminal import notice, progress_bars
 from simmpp.report.page.beside import FIGURES_FOLDER
 from simmpp.report.page.folder import read_folder
@@ -16,9 +16,9 @@ from simmpp.report.page.stills import write_stills
 
 @click.command(
     "report",
-    epilog=examples("simmpp report results/sweep", "simmpp report --live results/sweep"),
+    epilog=options.examples("simmpp report results/sweep", "simmpp report --live results/sweep"),
 )
-@click.argument("folder_path", metavar="DIR", type=NamedPath())
+@click.argument("folder_path", metavar="DIR", type=options.NamedPath())
 @click.option(
     "--live",
     is_flag=True,
@@ -34,7 +34,7 @@ def report_command(folder_path: Path, live: bool) -> None:
     if live:
         _follow(folder_path, folder_path / PAGE)
     report = report_of(read_folder(folder_path))
-    folder(folder_path, "DIR")
+    options.folder(folder_path, "DIR")
     page = write_page(report)
     click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
     _draw(report)
@@ -55,7 +55,7 @@ def _follow(folder_path: Path, page: Path) -> None:
 def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
     to = report.folder.path / FIGURES_FOLDER
-    folder(to, "DIR")
+    options.folder(to, "DIR")
     plates = sum(len(figure.plates) for figure in report.figures)
     with progress_bars() as bars:
         task = bars.add_task("drawing", total=plates)

@@ -8,44 +8,34 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import (
-    NamedPath,
-    Whole,
-    available_cores,
-    examples,
-    folder,
-    workers_option,
-)
+from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import announce_compilation, notice, output, table
+from simmpp.commands.terminal import FAILED, announce_compilation, notice, output, table
 from simmpp.studies.nebel98.reproduce import Reproduction, reproduce
-
-POINTS_FAILED = 1
 
 
 @click.command(
     "reproduce",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp reproduce", "simmpp reproduce --resolution 64 --seeds 2 --out results/look"
     ),
 )
-@click.option(
+@options.path(
     "--out",
-    type=NamedPath(),
+    "Folder of rows, figures and claims.csv.",
     default=Path("results", "nebel98"),
     show_default=True,
-    help="Folder of rows, figures and claims.csv.",
 )
 @click.option(
     "--seeds",
-    type=Whole(1, 10_000),
+    type=options.Whole(1, 10_000),
     metavar="N",
     help="Draws of each point.  [default: the experiments' 8]",
 )
-@workers_option("Processes on this machine.  [default: one for each core]")
+@options.workers("Processes on this machine.  [default: one for each core]")
 @click.option(
     "--resolution",
-    type=Whole(1, 16384),
+    type=options.Whole(1, 16384),
     metavar="R",
     help="Pixels along each side, for a quick look.  [default: the paper's 512]",
 )
@@ -58,7 +48,7 @@ def reproduce_command(
     SVG) and claims.csv. The same command continues what was interrupted; more seeds, or another
     resolution, add to what is there. Exits with 1 if a point failed.
     """
-    folder(out, "--out")
+    options.folder(out, "--out")
     announce_compilation()
     began_s = time.monotonic()
     with progress_of_sweep() as watcher:
@@ -66,12 +56,12 @@ def reproduce_command(
             out,
             seeds=seeds,
             resolution=resolution,
-            workers=workers or available_cores(),
+            workers=workers or options.available_cores(),
             watcher=watcher,
         )
     _print(outcome)
     click.echo(f"\n{out}: rows, figures and claims.csv, in {time.monotonic() - began_s:.0f} s")
-    sys.exit(POINTS_FAILED if outcome.failed else 0)
+    sys.exit(FAILED if outcome.failed else 0)
 
 
 def _print(outcome: Reproduction) -> None:

@@ -10,50 +10,39 @@ import click
 import numpy as np
 from rich.progress import TaskID
 
-from simmpp.commands.options import (
-    NamedPath,
-    engine_option,
-    examples,
-    folder,
-    set_option,
-    window_of,
-    writable,
-)
+from simmpp.commands import options
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
-from simmpp.commands.terminal import notice, output, progress_bars
+from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import row, write_rows
+from simmpp.run.rows import RECORD, RESULTS, row, write_rows
 from simmpp.run.summary import summary
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
 from simmpp.workload.trace.verify import verify
 
-VERIFY_FAILED = 1
-
 
 @click.command(
     "run",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp run configs/quick.yaml --picture quick.png",
         "simmpp run configs/quick.yaml --set memory.fraction=5% --figures figures",
         "simmpp run configs/quick.yaml --timeline cut.json --timeline-window '0 ms:5 ms'",
     ),
 )
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@engine_option("The event loop.  [default: the key engine, or else compiled]")
-@set_option("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
-@click.option("--out", type=NamedPath(), help="Folder for run.json and results.csv.")
-@click.option("--picture", type=NamedPath(), help="Write the picture as PNG.")
-@click.option(
+@options.config_argument
+@options.engine("The event loop.  [default: the key engine, or else compiled]")
+@options.setting("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
+@options.path("--out", "Folder for run.json and results.csv.")
+@options.path("--picture", "Write the picture as PNG.")
+@options.path(
     "--timeline",
-    type=NamedPath(),
+    "Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
     metavar="FILE",
-    help="Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
 )
 @click.option(
     "--timeline-window",
@@ -61,11 +50,10 @@ VERIFY_FAILED = 1
     metavar="START:END",
     help="The part of the run that --timeline writes, such as '0 ms:5 ms'; all of it by default.",
 )
-@click.option(
+@options.path(
     "--figures",
-    type=NamedPath(),
+    "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
-    help="Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
 )
 @click.option(
     "--verify",
@@ -90,11 +78,11 @@ def run_command(
     if they are not named.
     """
     config = load_config(config_path, (*overrides, *engine))
-    writable(picture, "--picture", ".png")
-    folder(out, "--out")
-    window_ps = None if window is None else window_of(window, "--timeline-window")
+    options.writable(picture, "--picture", ".png")
+    options.folder(out, "--out")
+    window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
-    folder(figures, "--figures")
+    options.folder(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(
@@ -119,7 +107,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             _simulate(point, runs, recorders, record_tests=verify)
     finally:
         if out and runs:
-            _write(point, runs, out)
+            write_record(record_of_run(point, runs), out / RECORD)
+            write_rows([row(point, run) for run in runs], out / RESULTS)
     output().print(summary(point, runs))
     if verify:
         _verify(point, runs)
@@ -154,11 +143,6 @@ def _simulate(
                 recorder.end(run)
 
 
-def _write(point: Point, runs: list[PolicyRun], out: Path) -> None:
-    write_record(record_of_run(point, runs), out / "run.json")
-    write_rows([row(point, run) for run in runs], out / "results.csv")
-
-
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     scene = scene_of(point.config.ray_source, "--picture")()
@@ -170,16 +154,11 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     scene, failed = scene_of(point.config.ray_source, "--verify")(), False
     nothing = np.zeros(0, np.int32)
     for run in runs:
-        rays, objects = run.result.tested_rays, run.result.tested_objects
-        problem = verify(
-            scene,
-            point.config.picture,
-            point.workload,
-            nothing if rays is None else rays,
-            nothing if objects is None else objects,
-        )
+        tests = (run.result.tested_rays, run.result.tested_objects)
+        rays, objects = (nothing if column is None else column for column in tests)
+        problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         click.echo(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None
     if failed:
-        sys.exit(VERIFY_FAILED)
+        sys.exit(FAILED)

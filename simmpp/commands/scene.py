@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.table import Table
 
-from simmpp.commands.options import NamedPath, examples, writable
-from simmpp.commands.terminal import output
+from simmpp.commands import options
+from simmpp.commands.terminal import OBJECTS_SHOWN, output, texts
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
 from simmpp.scene.nff import write_nff
@@ -18,34 +17,32 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
 
 PREVIEW_RESOLUTION = 512
-OBJECTS_SHOWN, MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 20, 10
+MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 10
 
 
 @click.command(
     "scene",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp scene mountain:4 --preview mountain4.png",
         "simmpp scene mountain:4 --nff mountain4.nff",
     ),
 )
 @click.argument("spec")
-@click.option("--nff", "nff_path", type=NamedPath(), help="Write the scene as NFF.")
-@click.option("--preview", type=NamedPath(), help="Write a picture of it as PNG.")
+@options.path("--nff", "Write the scene as NFF.")
+@options.path("--preview", "Write a picture of it as PNG.")
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
-def scene_command(
-    spec: str, nff_path: Path | None, preview: Path | None, all_objects: bool
-) -> None:
+def scene_command(spec: str, nff: Path | None, preview: Path | None, all_objects: bool) -> None:
     """List the objects and materials of a scene.
 
     SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size) or a file: NFF, or a
     mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
     """
-    writable(nff_path, "--nff", ".nff")
-    writable(preview, "--preview", ".png")
+    options.writable(nff, "--nff", ".nff")
+    options.writable(preview, "--preview", ".png")
     scene = load_scene(spec)
     _list(scene, None if all_objects else OBJECTS_SHOWN)
-    if nff_path:
-        nff_path.write_text(write_nff(scene), encoding="utf-8", newline="\n")
+    if nff:
+        nff.write_text(write_nff(scene), encoding="utf-8", newline="\n")
     if preview:
         _preview(scene, preview)
 
@@ -56,11 +53,11 @@ def _list(scene: Scene, most_objects: int | None) -> None:
     console = output()
     console.print("\n".join(_facts(facts)), soft_wrap=True)
     console.print()
-    console.print(_table(facts["materials"], MATERIALS_SHOWN if most_objects else None))
-    console.print()
+    _print(facts["materials"], MATERIALS_SHOWN if most_objects else None)
     objects = object_table(scene)
     rows = objects if most_objects is None else objects.head(most_objects)
-    console.print(_table(rows.to_dict("records"), None))
+    console.print()
+    _print(rows.to_dict("records"))
     if len(rows) < len(objects):
         console.print(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
 
@@ -89,16 +86,13 @@ def _vector(vector: list[float]) -> str:
     return "(" + ", ".join(f"{x:g}" for x in vector) + ")"
 
 
-def _table(rows: list[dict[Any, Any]], most: int | None) -> Table:
-    """Rows as a table; beyond ``most`` only their number."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for column in rows[0] if rows else ():
-        table.add_column(str(column), no_wrap=True)
-    for row in rows[:most]:
-        table.add_row(*map(_cell, row.values()))
+def _print(rows: list[dict[Any, Any]], most: int | None = None) -> None:
+    """Print rows as a table; beyond ``most`` only their number."""
+    names = list(rows[0]) if rows else []
+    cells = [[_cell(value) for value in row.values()] for row in rows[:most]]
     if most is not None and len(rows) > most:
-        table.add_row(f"... {len(rows) - most} more")
-    return table
+        cells.append([f"... {len(rows) - most} more"])
+    output().print(texts(names, cells, whole=len(names)))
 
 
 def _cell(value: object) -> str:
@@ -112,8 +106,8 @@ def _cell(value: object) -> str:
 def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
     # Only --preview traces, which needs numba.
-    from simmpp.commands.tracing import traced
+    from simmpp.commands.tracing import workload_of_scene
     from simmpp.workload.trace.shading import render, save_png
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)
-    save_png(render(scene, picture, traced(scene, picture)), path)
+    save_png(render(scene, picture, workload_of_scene(scene, picture)), path)

@@ -7,46 +7,33 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.options import (
-    NamedPath,
-    Number,
-    available_cores,
-    engine_option,
-    examples,
-    folder,
-    set_option,
-    workers_option,
-)
+from simmpp.commands import options
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import start_server
 
 
 @click.command(
     "sweep",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp sweep configs/sweep.yaml",
         "simmpp sweep configs/sweep.yaml --set seeds='[0, 1, 2, 3]' --out results/more",
     ),
 )
-@click.argument("config_path", metavar="CONFIG", type=NamedPath())
-@workers_option("Processes on this machine; 1 works in this one.  [default: one for each core]")
+@options.config_argument
+@options.workers("Processes on this machine; 1 works in this one.  [default: one for each core]")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
-@engine_option("The event loop.  [default: the key engine, or else compiled]")
-@set_option(
+@options.engine("The event loop.  [default: the key engine, or else compiled]")
+@options.setting(
     "Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable."
 )
 @click.option(
     "--timeout",
     "timeout_s",
-    type=Number("a finite number of seconds above 0", 0, min_open=True),
+    type=options.Real("a finite number of seconds above 0", 0, min_open=True),
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )
-@click.option(
-    "--out",
-    type=NamedPath(),
-    help="Folder of the tables.  [default: results/NAME-OF-CONFIG]",
-)
+@options.path("--out", "Folder of the tables.  [default: results/NAME-OF-CONFIG]")
 def sweep_command(
     config_path: Path,
     workers: int | None,
@@ -65,7 +52,7 @@ def sweep_command(
     """
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
-    workers = workers or available_cores()
+    workers = workers or options.available_cores()
     if workers > 1 and cluster is None:
         start_server()
     # Not at the top: the server of the workers and this process load numba and the rest at once.
@@ -77,7 +64,7 @@ def sweep_command(
 
     config = load_config(config_path, (*overrides, *engine))
     out = Path("results", config_path.stem) if out is None else out
-    folder(out, "--out")
+    options.folder(out, "--out")
     announce_compilation()
     with progress_of_sweep() as watcher:
         result = run_sweep(

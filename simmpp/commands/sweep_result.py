@@ -10,13 +10,12 @@ from typing import Any
 import click
 from rich.table import Table
 
-from simmpp.commands.terminal import notice, output
+from simmpp.commands.terminal import FAILED, notice, output
 from simmpp.config.settings import Settings
 from simmpp.policy.registry import REFERENCE
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
 
-POINTS_FAILED = 1
 PROFITS_SHOWN = 40
 
 
@@ -31,7 +30,7 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
             click.echo(line)
     for error, count in failed["error"].value_counts().items():
         notice(f"{count} failed: {error}")
-    return POINTS_FAILED if len(failed) else 0
+    return FAILED if len(failed) else 0
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:

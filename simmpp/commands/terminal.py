@@ -14,6 +14,10 @@ from rich.table import Table
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
+OBJECTS_SHOWN = 20
+"""Lines of a list of objects, unless all are asked for."""
+FAILED = 1
+"""Exit code of a command that worked, when what it ran failed, or is not what it should be."""
 TRACER_S, ENGINE_S = 10, 20
 """What compiling takes on a core of 2020: ``tests/bench/bench_first_use.py`` measures it."""
 
@@ -39,22 +43,22 @@ def _is_terminal(stream: TextIO | None) -> bool:
 
 def table(rows: Sequence[Mapping[str, object]]) -> Table:
     """Rows with the same keys as a table; numbers to the right."""
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name, value in (rows[0] if rows else {}).items():
-        shown.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
+        grid.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
     for row in rows:
-        shown.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
-    return shown
+        grid.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
+    return grid
 
 
 def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Table:
     """Rows of texts as a table; only columns after the first ``whole`` are broken into lines."""
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for number, name in enumerate(names):
-        shown.add_column(name, no_wrap=number < whole)
+        grid.add_column(name, no_wrap=number < whole)
     for row in rows:
-        shown.add_row(*row)
-    return shown
+        grid.add_row(*row)
+    return grid
 
 
 def notice(text: str) -> None:

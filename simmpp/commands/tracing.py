@@ -22,7 +22,7 @@ def workload(config: Config, *, simulating: bool = False) -> Workload:
         return workload_of(config, progress=progress, notice=notice)
 
 
-def traced(scene: Scene, picture: Picture) -> Workload:
+def workload_of_scene(scene: Scene, picture: Picture) -> Workload:
     """The picture's workload, from the cache or traced with a bar."""
     announce_compilation(simulating=False)
     with _bar() as progress:

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 import numpy as np
 
-from simmpp.commands.options import NamedPath, examples, set_option, writable
-from simmpp.commands.terminal import output, table
+from simmpp.commands import options
+from simmpp.commands.terminal import OBJECTS_SHOWN, output, table
 from simmpp.commands.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
@@ -18,19 +18,21 @@ from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
 from simmpp.workload.exchange.exchange import export_workload
 from simmpp.workload.workload import Workload
 
-OBJECTS_SHOWN, DEPTHS_SHOWN = 20, 12
+DEPTHS_SHOWN = 12
 
 
 @click.command(
     "workload",
-    epilog=examples(
+    epilog=options.examples(
         "simmpp workload mountain:4 --export mountain4.parquet",
         "simmpp workload configs/quick.yaml --set picture.resolution=32",
     ),
 )
 @click.argument("spec")
-@click.option("--export", type=NamedPath(), help="Write it as .parquet or .npz.")
-@set_option("Set a dotted key of the configuration, such as picture.resolution=128; repeatable.")
+@options.path("--export", "Write it as .parquet or .npz.")
+@options.setting(
+    "Set a dotted key of the configuration, such as picture.resolution=128; repeatable."
+)
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
 def workload_command(
     spec: str, export: Path | None, overrides: tuple[str, ...], all_objects: bool
@@ -41,7 +43,7 @@ def workload_command(
     configuration (.yaml). --export writes rays and objects as tables that other tools can read
     and `scene: {workload: FILE}` reads back.
     """
-    writable(export, "--export")
+    options.writable(export, "--export")
     if export and not is_workload(export.name):
         expected = f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}"
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
@@ -56,7 +58,7 @@ def workload_command(
 
 
 def _list(workload: Workload, most_objects: int | None) -> None:
-
+    """Print counts, rays by depth and kind, and objects; the first ones of a long list."""
     console = output()
     rows, columns = workload.picture
     tested = len(np.unique(workload.itinerary_objects))

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
-
-from simmpp.sweeps.ratios import Ratios, mean
 
 LOG_MARGIN = 1.2
 """Factor of room beyond both ends of a logarithmic axis."""
@@ -116,24 +113,3 @@ class Bars:
     """Heights of each part, one for each bar; the bottom part first."""
     rows: list[int] = field(default_factory=list)
     """Number of the point that a bar shows."""
-
-
-def curve(
-    label: str,
-    abscissas: Iterable[float],
-    ratios_at: Callable[[float], Ratios],
-    number_at: Callable[[float], int | None] = lambda _: None,
-    unit: float = 1,
-) -> Curve:
-    """The curve of what was measured; ``unit`` scales the abscissa, 100 for per cent.
-
-    Points without a result are left out. ``number_at`` gives the number of a point, if it has one.
-    """
-    measured = {x: ratios_at(x) for x in abscissas}
-    spreads = {
-        x * unit: Spread(mean(ratios), min(ratios), max(ratios))
-        for x, ratios in measured.items()
-        if ratios
-    }
-    numbers = {x * unit: number_at(x) for x, ratios in measured.items() if ratios}
-    return Curve(label, spreads, rows={x: n for x, n in numbers.items() if n is not None})

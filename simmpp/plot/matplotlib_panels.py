@@ -28,6 +28,7 @@ STYLES: tuple[dict[str, Any], ...] = (
 GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 2))}
 STATED: dict[str, Any] = {"facecolor": "0.9", "edgecolor": "0.72", "hatch": "////"}
 FLOOR: dict[str, Any] = {"alpha": 0.3, "linewidth": 0}
+LEGEND: dict[str, Any] = {"fontsize": 8, "title_fontsize": 8, "handlelength": 3.2}
 FADE = 1.35
 """A band below a level is drawn down to that part of it: others lie deeper."""
 PART_STYLES: tuple[dict[str, Any], ...] = (
@@ -38,7 +39,7 @@ PART_STYLES: tuple[dict[str, Any], ...] = (
 )
 """Of bars, bottom first: they differ in lightness too."""
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
-FEW = 4
+MOST_IN_TWOS = 4
 """Panels up to which two are side by side; of more it is three."""
 SETTINGS: Any = {
     "svg.hashsalt": "simmpp",
@@ -52,7 +53,7 @@ SETTINGS: Any = {
 
 def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
     """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
-    across = min(len(panels), 2 if len(panels) <= FEW else 3)
+    across = min(len(panels), 2 if len(panels) <= MOST_IN_TWOS else 3)
     down = -(-len(panels) // across)
     with matplotlib.rc_context(SETTINGS):
         figure = Figure(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")
@@ -101,14 +102,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 def _draw_legend(axes: Axes, title: str) -> None:
     """A legend with each label once, however many curves have it."""
     handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    axes.legend(
-        handles.values(),
-        handles.keys(),
-        title=title or None,
-        fontsize=8,
-        title_fontsize=8,
-        handlelength=3.2,
-    )
+    axes.legend(handles.values(), handles.keys(), title=title or None, **LEGEND)
 
 
 def _draw_bars(axes: Axes, bars: Bars) -> None:

@@ -16,12 +16,7 @@ Drawn = dict[str, Any]
 
 def layout(x: Scale, y: Scale) -> Drawn:
     """What all panels have in common, with their axes."""
-    return {
-        "xaxis": _axis(x),
-        "yaxis": _axis(y),
-        "showlegend": False,
-        "hovermode": "closest",
-    }
+    return {"xaxis": _axis(x), "yaxis": _axis(y), "showlegend": False, "hovermode": "closest"}
 
 
 def _axis(scale: Scale) -> Drawn:

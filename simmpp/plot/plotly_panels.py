@@ -16,7 +16,7 @@ from simmpp.plot.plotly_axes import Drawn, layout, limited, placed
 SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x")
 DASHES = ("solid", "dash", "dashdot", "longdash", "dot", "longdashdot", "solid")
 """Curves differ by markers and lines too, as in print."""
-COLOURS = len(SYMBOLS)
+N_COLOURS = len(SYMBOLS)
 PART_COLOURS = {
     "compute": 0,
     "communication": 1,
@@ -39,10 +39,10 @@ def script() -> str:
 def drawn(panel: Panel | Bars) -> Drawn:
     """A panel as plotly.js takes it, with its title, and a text for those who don't see it."""
     drawing = _curves(panel) if isinstance(panel, Panel) else _bars(panel)
-    return drawing | {"title": panel.title, "alt": described(panel)}
+    return drawing | {"title": panel.title, "alt": alt_text(panel)}
 
 
-def described(panel: Panel | Bars) -> str:
+def alt_text(panel: Panel | Bars) -> str:
     """What a panel shows, for those who don't see it."""
     if isinstance(panel, Bars):
         parts = [f"{name} {_span(heights)}" for name, heights in panel.parts.items()]
@@ -61,12 +61,10 @@ def _span(values: Iterable[float]) -> str:
 
 
 def _curves(panel: Panel) -> Drawn:
-    traces: list[Drawn] = []
-    for curve in panel.curves:
-        if curve.is_guide:
-            traces.append(_guide(curve))
-            continue
-        traces.append(_line(curve, panel.style_of(curve) % COLOURS, panel))
+    traces = [
+        _guide(curve) if curve.is_guide else _line(curve, panel.style_of(curve) % N_COLOURS, panel)
+        for curve in panel.curves
+    ]
     drawing = layout(panel.x, limited(panel))
     drawing["shapes"] = [_stated(stated) for stated in panel.stated]
     drawing["annotations"] = [_remark(stated, panel) for stated in panel.stated if stated.label]
@@ -107,13 +105,8 @@ def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
 def _noted(curve: Curve, xs: list[float]) -> Drawn:
     """The notes of a curve, to the upper right of their points."""
     notes = [html.escape(curve.notes.get(x, "")).replace("\n", "<br>") for x in xs]
-    font = {"size": 11, "color": "var(--muted)"}
-    return {
-        "mode": "lines+markers+text",
-        "text": notes,
-        "textposition": "top right",
-        "textfont": font,
-    }
+    style = {"textposition": "top right", "textfont": {"size": 11, "color": "var(--muted)"}}
+    return {"mode": "lines+markers+text", "text": notes, **style}
 
 
 def _short(values: Iterable[float]) -> list[float]:

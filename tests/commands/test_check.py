@@ -287,4 +287,4 @@ def test_what_the_repository_checks_is_what_it_has() -> None:
         "profits.csv", "results.csv", "run.json",
     ]  # fmt: skip
     shutil.copytree(COMMITTED, "b")
-    assert baseline.read_sweep(Path("b")).tables.results
+    assert baseline.read_sweep(Path("b")).results

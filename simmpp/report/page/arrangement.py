@@ -10,7 +10,7 @@ from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS
 from simmpp.report.page import words
 
-AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
+KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 PREFERRED = ("fraction", "processors")
 """Abscissas, of those with equally many values."""
 MOST_PANELS = 12
@@ -32,10 +32,10 @@ class Arrangement:
     """The others: one plate of panels for each combination of them that there is."""
 
 
-def axes_of(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[Any]]:
+def varying_axes(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[Any]]:
     """The axes along which rows differ, but for policy and seed."""
     axes: dict[str, list[Any]] = {}
-    for name in (*AXES, *further):
+    for name in (*KEY_AXES, *further):
         values = {row[name] for row in rows}
         if len(values) > 1:
             axes[name] = sorted(values, key=lambda cell: sort_key({"": cell}, ("",)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from simmpp.plot.curves import PERCENT, Bars, Scale
 from simmpp.report.page import words
@@ -12,7 +11,8 @@ from simmpp.report.page.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
 STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")
-MARGIN = 1.02
+BAR_HEADROOM = 1.02
+"""Of a panel above its highest bar, as a factor."""
 
 
 def bar_figures(points: Points) -> Iterator[Figure]:
@@ -22,7 +22,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
         ACCOUNTS_STEM,
         "What PEs spend their time with",
         "shares of the time of all PEs, all seeds together",
-        Scale("share of time (%)"),
+        "share of time (%)",
         lambda number: {k: v * PERCENT for k, v in points.shares(number).items()},
     )
     yield _figure(
@@ -30,7 +30,7 @@ def bar_figures(points: Points) -> Iterator[Figure]:
         MESSAGES_STEM,
         "Messages by kind",
         "means over seeds; the same scale for all policies",
-        Scale("messages"),
+        "messages",
         points.messages,
     )
 
@@ -40,30 +40,29 @@ def _figure(
     stem: str,
     title: str,
     note: str,
-    y: Scale,
-    heights: Callable[[int], dict[str, float]],
+    label: str,
+    heights_of: Callable[[int], dict[str, float]],
 ) -> Figure:
     along = abscissas(points.axes)[0]
     facet = None if along == "policy" else "policy"
     arrangement = arrange(points.profits, points.axes, along, facet)
-    label = words.abscissa(along, list(arrangement.values))[0].label
+    x = words.abscissa(along, list(arrangement.values))[0]
+    styles = {words.policy(title): n for title, n in styles_of(points.profits).items()}
     bars_of: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
-        numbers_of = {panel: [n for n, _ in panels[panel] if heights(n)] for panel in panels}
-        most = max((sum(heights(n).values()) for ns in numbers_of.values() for n in ns), default=1)
-        for panel in sorted(panels, key=_colour_order(points)):
-            names = tuple(words.label(along, points.profits[n][along]) for n in numbers_of[panel])
-            parts = _parts([heights(number) for number in numbers_of[panel]])
-            scale = replace(y, limits=(0, most * MARGIN))
-            bars = Bars(panel, Scale(label, names=names), scale, parts, numbers_of[panel])
-            bars_of.setdefault(plate, []).append(bars)
+        drawn = {
+            panel: {n: heights for n, _ in numbered if (heights := heights_of(n))}
+            for panel, numbered in panels.items()
+        }
+        sums = [sum(heights.values()) for bars in drawn.values() for heights in bars.values()]
+        y = Scale(label, limits=(0, max(sums, default=1) * BAR_HEADROOM))
+        bars_of[plate] = []
+        for panel in sorted(panels, key=lambda panel: styles.get(panel, 0)):
+            numbers = list(drawn[panel])
+            names = tuple(words.label(along, points.profits[n][along]) for n in numbers)
+            parts = _parts(list(drawn[panel].values()))
+            bars_of[plate].append(Bars(panel, Scale(x.label, names=names), y, parts, numbers))
     return Figure(stem, title, note, bars_of)
-
-
-def _colour_order(points: Points) -> Callable[[str], int]:
-    """Panels of policies come in the order of their colours."""
-    styles = {words.policy(title): n for title, n in styles_of(points.profits).items()}
-    return lambda panel: styles.get(panel, 0)
 
 
 def _parts(bars: list[dict[str, float]]) -> dict[str, list[float]]:

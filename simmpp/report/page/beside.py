@@ -9,16 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from simmpp.common.errors import ConfigError
-from simmpp.report.page.groups import GROUPS
+from simmpp.report.page.folder import undamaged
+from simmpp.report.page.groups import FIGURE_GROUPS
 
-TOPICS = {
-    "sensitivity": "Sensitivity",
-}
+TOPICS = {"sensitivity": "Sensitivity"}
 """Stems of files, as a whole or to the first hyphen, and what they are about."""
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png"}
 """Kinds of pictures."""
-OWN = tuple(stem for group in GROUPS for stem in group.stems)
+OWN = tuple(stem for group in FIGURE_GROUPS for stem in group.stems)
 """A report's own figures, which may be those of an earlier one."""
 FIGURES_FOLDER = "figures"
 """Where a report writes its figures, and `run --figures` may have written others."""
@@ -87,11 +85,8 @@ def _picture(path: Path) -> EmbeddedPicture:
 
 
 def _table(path: Path) -> CsvTable:
-    try:
-        with open(path, encoding="utf-8", newline="") as file:
-            rows = list(csv.reader(file))
-    except (ValueError, csv.Error) as error:
-        raise ConfigError(f"damaged: {error}", where=str(path)) from None
+    with undamaged(path), open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
     more = len(rows) - 1 - MOST_LINES
     name = f"{path.name}, {MOST_LINES} of {len(rows) - 1} rows" if more > 0 else path.name
     return CsvTable(name, rows[0] if rows else [], rows[1 : MOST_LINES + 1])

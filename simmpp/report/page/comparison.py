@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
-from simmpp.report.page.arrangement import axes_of
-from simmpp.report.page.difference import BEYOND, Difference, changes_by_measure, line, ranked
+from simmpp.report.page.arrangement import varying_axes
+from simmpp.report.page.difference import BEYOND, SideBySide, changes_by_measure, line, ranked
 from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.profit_figures import ProfitData, profit_figures
@@ -20,7 +18,7 @@ MOST_CHANGES = 300
 """Lines of the page's table."""
 
 
-def write_comparison(before: Folder, after: Folder, sweeps: Difference, path: Path) -> None:
+def write_comparison(before: Folder, after: Folder, sweeps: SideBySide, path: Path) -> None:
     """Write the page."""
     changes = ranked(sweeps.changes)
     figures = _figures(sweeps)
@@ -29,7 +27,7 @@ def write_comparison(before: Folder, after: Folder, sweeps: Difference, path: Pa
         "facts": [f"before: {before.path}", f"after: {after.path}"],
         "live": "",
         "sections": [("summary", "Summary"), ("curves", "Curves"), ("changes", "What moved")],
-        "sentences": [verdict(sweeps), *reasons(before, after)],
+        "sentences": [outcome(sweeps), *causes(before, after)],
         "summary": changes_by_measure(sweeps),
         "figures": figures,
         "changes": [line(change) for change in changes[:MOST_CHANGES]],
@@ -46,7 +44,7 @@ def _name(folder: Folder) -> str:
     return folder.path.resolve().name
 
 
-def verdict(sweeps: Difference) -> str:
+def outcome(sweeps: SideBySide) -> str:
     """What there is to see, in one sentence."""
     moved = {change.number for change in sweeps.changes}
     sure = {change.number for change in sweeps.changes if change.certainty == BEYOND}
@@ -58,7 +56,7 @@ def verdict(sweeps: Difference) -> str:
     return f"{text}; {len(moved)} moved, {len(sure) or 'none'} beyond the 95 % interval."
 
 
-def reasons(before: Folder, after: Folder) -> list[str]:
+def causes(before: Folder, after: Folder) -> list[str]:
     """Settings and machines that are not the same: why values may have moved."""
     problems = []
     for key in ("config", "versions"):
@@ -68,7 +66,7 @@ def reasons(before: Folder, after: Folder) -> list[str]:
     return problems
 
 
-def _figures(sweeps: Difference) -> list[Figure]:
+def _figures(sweeps: SideBySide) -> list[Figure]:
     marked = {
         measure.replace(" ", "_"): frozenset(
             c.number for c in sweeps.changes if c.measure == measure and c.certainty == BEYOND
@@ -78,6 +76,6 @@ def _figures(sweeps: Difference) -> list[Figure]:
     rows = [*sweeps.after.profits, *sweeps.before.profits]
     if not rows:
         return []
-    axes: Mapping[str, Any] = axes_of(rows, sweeps.after.further)
-    figures = profit_figures(ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked))
-    return list(figures)
+    axes = varying_axes(rows, sweeps.after.further)
+    data = ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked)
+    return list(profit_figures(data))

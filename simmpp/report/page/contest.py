@@ -16,7 +16,7 @@ from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
 
-SURE, UNSURE, EQUAL, ALONE, UNKNOWN = "sure", "unsure", "equal", "alone", "too few seeds"
+SURE, UNSURE, EQUAL, ALONE, TOO_FEW_SEEDS = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""
 
 
@@ -99,5 +99,5 @@ def _certainty(ratios: list[float], low: float) -> str:
     if ratios and all(value == 1 for value in ratios):
         return EQUAL
     if math.isnan(low):
-        return UNKNOWN
+        return TOO_FEW_SEEDS
     return SURE if low > 1 else UNSURE

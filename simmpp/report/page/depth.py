@@ -7,9 +7,9 @@ from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.plot.plotly_panels import COLOURS, PART_COLOURS
+from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
 from simmpp.report.page import words
-from simmpp.report.page.arrangement import AXES
+from simmpp.report.page.arrangement import KEY_AXES
 from simmpp.report.page.figure import styles_of
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
 from simmpp.sweeps.profits import MEASURES, STATISTICS
@@ -27,7 +27,7 @@ def depth_of(points: Points) -> dict[str, Any]:
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
         "policies": [words.policy(title) for title in titles],
-        "styles": [style % COLOURS for style in styles_of(profits).values()],
+        "styles": [style % N_COLOURS for style in styles_of(profits).values()],
         "accounts": dict(ACCOUNTS),
         "kinds": dict(KINDS),
         "colours": PART_COLOURS,
@@ -52,7 +52,7 @@ def _place(points: Points, number: int) -> str:
 
 def _name(points: Points, row: Row) -> str:
     """All keys of a point: the same however many points there are."""
-    return "|".join(str(row[name]) for name in (*AXES, *points.further, "policy"))
+    return "|".join(str(row[name]) for name in (*KEY_AXES, *points.further, "policy"))
 
 
 def _column(rows: Iterable[Row], name: str) -> list[Any]:

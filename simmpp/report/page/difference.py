@@ -17,6 +17,7 @@ from simmpp.common.units import format_ps
 from simmpp.methods.columns import PLACE
 from simmpp.policy.registry import REFERENCE
 from simmpp.report.page import words
+from simmpp.report.page.contest import TOO_FEW_SEEDS
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points, points_of
 from simmpp.run.profit import ratio
@@ -24,7 +25,7 @@ from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.matching import extremes, matched, percent
 
-BEYOND, WITHIN, UNKNOWN = "beyond the interval", "within the interval", "too few seeds"
+BEYOND, WITHIN = "beyond the interval", "within the interval"
 COMPARED = {
     "makespan": ("makespan_ps", False),
     "messages": ("messages", False),
@@ -52,7 +53,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Difference:
+class SideBySide:
     """Two sweeps side by side."""
 
     before: Points
@@ -64,7 +65,7 @@ class Difference:
     only_after: list[str]
 
 
-def difference_of(before: Folder, after: Folder) -> Difference:
+def difference_of(before: Folder, after: Folder) -> SideBySide:
     """Compare what both have; a column that only one has must have one value there."""
     further = tuple(name for name in before.further if name in after.further)
     for one, other in ((before, after), (after, before)):
@@ -80,7 +81,7 @@ def difference_of(before: Folder, after: Folder) -> Difference:
             gone.append(_said(old, number))
         elif number_now is not None:
             added.append(_said(new, number_now))
-    return Difference(old, new, common, changes, gone, added)
+    return SideBySide(old, new, common, changes, gone, added)
 
 
 def _numbers(points: Points, further: Sequence[str]) -> dict[tuple[Hashable, ...], int]:
@@ -134,12 +135,12 @@ def _compared(before: BySeed, after: BySeed) -> tuple[list[float], str]:
         if all(value == 1 for value in ratios):
             return ratios, ""
         ends = interval(ratios)
-        return ratios, UNKNOWN if ends is None else _outside(1.0, 1.0, *ends)
+        return ratios, TOO_FEW_SEEDS if ends is None else _outside(1.0, 1.0, *ends)
     if not before or not after or fmean(before.values()) == fmean(after.values()):
         return [1.0], ""
     one, other = interval(list(before.values())), interval(list(after.values()))
     mean = fmean(after.values()) / (fmean(before.values()) or math.inf)
-    sure = UNKNOWN if one is None or other is None else _outside(*one, *other)
+    sure = TOO_FEW_SEEDS if one is None or other is None else _outside(*one, *other)
     return [mean], sure
 
 
@@ -147,7 +148,7 @@ def _outside(low: float, high: float, other_low: float, other_high: float) -> st
     return BEYOND if high < other_low or other_high < low else WITHIN
 
 
-def changes_by_measure(difference: Difference) -> list[dict[str, str]]:
+def changes_by_measure(difference: SideBySide) -> list[dict[str, str]]:
     """One line per measure: how many points moved, how many of them surely, and how far."""
     lines = []
     for measure in COMPARED:

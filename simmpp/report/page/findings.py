@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
@@ -16,7 +17,7 @@ from simmpp.report.page.contest import (
     ALONE,
     EQUAL,
     SURE,
-    UNKNOWN,
+    TOO_FEW_SEEDS,
     UNSURE,
     Contest,
     contests_of,
@@ -74,7 +75,7 @@ def _fastest(points: Points, contests: Sequence[Contest]) -> str:
 
 def _of_these(won: Sequence[Contest]) -> str:
     unsure = sum(contest.certainty == UNSURE for contest in won)
-    if any(contest.certainty == UNKNOWN for contest in won):
+    if any(contest.certainty == TOO_FEW_SEEDS for contest in won):
         return " (how sure is not known: too few seeds)"
     if not unsure:
         return ""
@@ -85,14 +86,11 @@ def _best_gains(points: Points) -> Iterator[str]:
     """Where each dataflow but the reference gains most and least."""
     no_flows = {REFERENCE, *replicated_policies(points)}
     titles = dict.fromkeys(row["policy"] for row in points.profits)
-    for title in (title for title in titles if title not in no_flows):
-        of_title = [
-            n
-            for n, row in enumerate(points.profits)
-            if row["policy"] == title and words.is_finite(row["time_profit"])
-        ]
-        if of_title:
-            yield _gain(points, title, of_title)
+    finite = [n for n, row in enumerate(points.profits) if words.is_finite(row["time_profit"])]
+    for title in titles:
+        numbers = [n for n in finite if points.profits[n]["policy"] == title]
+        if numbers and title not in no_flows:
+            yield _gain(points, title, numbers)
 
 
 def _gain(points: Points, title: str, numbers: Sequence[int]) -> str:
@@ -122,7 +120,7 @@ def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
     ceilings = [contest.ceiling for contest in contests if contest.ceiling is not None]
     if ceilings:
         beaten = sum(ceiling < 1 for ceiling in ceilings)
-        longer = span(1 / ceiling for ceiling in ceilings)
+        longer = range_text(1 / ceiling for ceiling in ceilings)
         text = (
             "With everything in every memory (replicated, no dataflow) the picture takes "
             f"{longer} times as long as with the fastest dataflow"
@@ -160,7 +158,7 @@ def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -
             winner,
             _where(points, contests, places, along),
             len(places),
-            span(points.profits[contest.best]["time_profit"] for contest in won),
+            range_text(points.profits[contest.best]["time_profit"] for contest in won),
             _lead(points, won),
             _sure(won),
         )
@@ -190,16 +188,13 @@ def _lead(points: Points, won: Sequence[Contest]) -> str:
     seconds = {points.profits[contest.second or 0]["policy"] for contest in ahead}
     if not ahead:
         return ""
-    lead = span((contest.lead - 1) * 100 for contest in ahead)
+    lead = range_text((contest.lead - 1) * 100 for contest in ahead)
     return f"{lead} % over {' or '.join(sorted(seconds))}"
 
 
 def _sure(won: Sequence[Contest]) -> str:
-    counts: Mapping[str, int] = {
-        kind: sum(contest.certainty == kind for contest in won)
-        for kind in (SURE, UNSURE, UNKNOWN, EQUAL, ALONE)
-    }
-    if counts[UNKNOWN]:
+    counts = Counter(contest.certainty for contest in won)
+    if counts[TOO_FEW_SEEDS]:
         return "not known: too few seeds"
     if counts[EQUAL] == len(won):
         return "equal in every seed"
@@ -212,7 +207,7 @@ def _sure(won: Sequence[Contest]) -> str:
     return f"beyond the 95 % interval at {counts[SURE]} of {len(won)}"
 
 
-def span(values: Iterable[float]) -> str:
+def range_text(values: Iterable[float]) -> str:
     """``"1.3 to 1.71"``; one number where all are the same."""
     ordered = sorted(value for value in values if words.is_number(value))
     if not ordered:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,8 +72,9 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
         raise ConfigError(f"{name}: value {str(path)!r}: expected a folder")
     claims = _table(path / CLAIMS, CLAIM_COLUMNS)
     timings = _table(path / TIMINGS, ("policy", "trace_s", "wall_s"))
-    record = _record(path / RECORD)
-    bench = _numbers(path / BENCH, bench_columns(()))
+    with undamaged(path / RECORD):
+        record = read_record(path / RECORD) if (path / RECORD).is_file() else {}
+    bench = numbers_of(_table(path / BENCH, bench_columns(())))
     if (path / RESULTS).is_file():
         rows, further = read_rows(path / RESULTS)
         table = _table(path / PROFITS, profit_columns())
@@ -109,21 +111,22 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
 
 def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
     """A CSV file's rows; none if there is no such file."""
-    if not path.is_file():
-        return []
+    with undamaged(path):
+        return read_csv(path, columns) if path.is_file() else []
+
+
+@contextmanager
+def undamaged(path: Path) -> Iterator[None]:
+    """Say where what can't be read is."""
     try:
-        return read_csv(path, columns)
+        yield
     except (ValueError, csv.Error) as error:
         raise ConfigError(f"damaged: {error}", where=str(path)) from None
 
 
-def _numbers(path: Path, columns: Sequence[str]) -> list[Row]:
-    return numbers_of(_table(path, columns))
-
-
 def numbers_of(rows: Sequence[Mapping[str, str]]) -> list[Row]:
     """Rows of a CSV file, with numbers where cells look like some."""
-    return [{name: _number(cell) for name, cell in row.items()} for row in rows]
+    return [{name: number_of(cell) for name, cell in row.items()} for row in rows]
 
 
 def _typed(row: Mapping[str, str], path: Path, line: int) -> Row:
@@ -147,16 +150,15 @@ def _cell(name: str, text: str) -> int | float | str:
         return int(text)
     if name in NUMERIC:
         return _finite(text)
-    return text if name in COLUMNS else _number(text)
+    return text if name in COLUMNS else number_of(text)
 
 
-def _number(text: str) -> int | float | str:
-    kinds: tuple[Callable[[str], int | float], ...] = (int, _finite)
-    for kind in kinds:
-        try:
-            return kind(text)
-        except ValueError:
-            continue
+def number_of(text: str) -> int | float | str:
+    """The number that a cell looks like, or its text."""
+    with suppress(ValueError):
+        return int(text)
+    with suppress(ValueError):
+        return _finite(text)
     return text
 
 
@@ -165,13 +167,3 @@ def _finite(text: str) -> float:
     if not math.isfinite(number):
         raise ValueError(text)
     return number
-
-
-def _record(path: Path) -> dict[str, Any]:
-    """``run.json``; empty if there is none."""
-    if not path.is_file():
-        return {}
-    try:
-        return read_record(path)
-    except ValueError as error:
-        raise ConfigError(f"damaged: {error}", where=str(path)) from None

@@ -28,7 +28,7 @@ class FigureGroup:
     """Not asked for figures where no point has rows."""
 
 
-GROUPS = (
+FIGURE_GROUPS = (
     FigureGroup("paper", "The paper's figures", CLICKING, paper.STEMS, paper.paper_figures),
     FigureGroup(
         *("profits", "Profits", CLICKING, profit_figures.STEMS),
@@ -40,7 +40,7 @@ GROUPS = (
     ),
     FigureGroup(
         *("accuracy", "Run time against error", "", (accuracy.STEM,)),
-        lambda folder, _: accuracy.accuracy_figures(folder.bench),
+        lambda folder, _: accuracy.accuracy_figures(folder.bench, paper.SCENE_NAMES),
         of_points=False,
     ),
 )

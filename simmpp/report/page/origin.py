@@ -8,7 +8,7 @@ from typing import Any
 
 from simmpp.common.units import counted
 from simmpp.report.page import words
-from simmpp.report.page.folder import Folder
+from simmpp.report.page.folder import Folder, number_of
 
 UNSAID = ("sweep", "check", "seeds", "policy")
 """Keys of a configuration that the figures show."""
@@ -69,15 +69,8 @@ def _versions(folder: Folder) -> Iterator[tuple[str, str]]:
 def _times(folder: Folder) -> Iterator[tuple[str, str]]:
     seconds: dict[str, float] = {}
     for row in folder.timings:
-        if words.is_finite(wall_s := _number(row["wall_s"])):
+        if isinstance(wall_s := number_of(row["wall_s"]), int | float):
             seconds[row["policy"]] = seconds.get(row["policy"], 0.0) + wall_s
     if seconds:
         parts = ", ".join(f"{words.policy(title)} {s:.3g} s" for title, s in seconds.items())
         yield "time to simulate", f"{sum(seconds.values()):.3g} s on one core: {parts}"
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return float("nan")

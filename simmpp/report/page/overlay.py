@@ -8,7 +8,7 @@ from pathlib import Path
 
 from simmpp.plot.curves import Panel
 from simmpp.plot.matplotlib_panels import draw
-from simmpp.report.page.arrangement import axes_of
+from simmpp.report.page.arrangement import varying_axes
 from simmpp.report.page.folder import numbers_of
 from simmpp.report.page.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.stills import titled
@@ -27,7 +27,7 @@ def overlay(
     rows = [*new, *old]
     common = [name for name in rows[0] if name in rows[-1]]
     further = [name for name in common if name not in profit_columns()]
-    figures = profit_figures(ProfitData(new, axes_of(rows, further), old))
+    figures = profit_figures(ProfitData(new, varying_axes(rows, further), old))
     panels = [
         titled(replace(panel, note=NOTE), figure, plate)
         for figure in figures

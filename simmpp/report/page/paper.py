@@ -9,14 +9,15 @@ from simmpp.policy.registry import REFERENCE
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
-from simmpp.studies.nebel98.figures import FIGURES
+from simmpp.studies.nebel98.figures import FIGURES, NAMES
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
 from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, RowIndex
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""
 STEMS = tuple(FIGURES)
-ENOUGH = 3
+SCENE_NAMES = NAMES
+LEAST_FRACTIONS = 3
 """Fractions x that make a curve."""
 
 
@@ -45,10 +46,8 @@ def _repeated(folder: Folder) -> Mapping[str, Sequence[Row]]:
     """The rows under the name of the first experiment with the same scenes and numbers of PEs."""
     if folder.further or not folder.rows:
         return {}
-    for name in EXPERIMENTS:
-        if _repeats(name, folder.rows):
-            return {name: folder.rows}
-    return {}
+    name = next((name for name in EXPERIMENTS if _repeats(name, folder.rows)), None)
+    return {name: folder.rows} if name else {}
 
 
 def _repeats(name: str, rows: Sequence[Row]) -> bool:
@@ -58,7 +57,7 @@ def _repeats(name: str, rows: Sequence[Row]) -> bool:
         {row["scene"] for row in rows} == scenes
         and {row["processors"] for row in rows} == processors
         and NEEDED.get(name, {REFERENCE, CONCURRENT}) <= policies
-        and len({row["fraction"] for row in rows}) >= ENOUGH
+        and len({row["fraction"] for row in rows}) >= LEAST_FRACTIONS
     )
 
 
@@ -68,4 +67,4 @@ def _of(name: str) -> tuple[set[str], set[int]]:
     spec, sweep = config.scene_spec, config.settings.sweep
     scenes = sweep.get("scene", [f"{spec['spd']}:{spec['size']}"])
     processors = sweep.get("processors", [config.processors])
-    return {str(each) for each in scenes}, {int(str(each)) for each in processors}
+    return {str(scene) for scene in scenes}, {int(str(nb)) for nb in processors}

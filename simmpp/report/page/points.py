@@ -10,22 +10,13 @@ from statistics import fmean
 from simmpp.common.files import Row
 from simmpp.methods.columns import PLACE
 from simmpp.policy.registry import REFERENCE
-from simmpp.report.page.arrangement import axes_of
+from simmpp.report.page.arrangement import varying_axes
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order
 
-ACCOUNTS = {
-    "compute": "compute_ps",
-    "communication": "communication_ps",
-    "waiting": "waiting_ps",
-}
+ACCOUNTS = {account: f"{account}_ps" for account in ("compute", "communication", "waiting")}
 """What PEs spend their time with, and its column."""
-KINDS = {
-    "requests": "request_messages",
-    "objects": "object_messages",
-    "rays": "ray_messages",
-    "loads": "load_messages",
-}
+KINDS = {f"{kind}s": f"{kind}_messages" for kind in ("request", "object", "ray", "load")}
 """Messages by kind, and their columns."""
 
 
@@ -49,7 +40,7 @@ class Points:
     @cached_property
     def axes(self) -> dict[str, list[object]]:
         """The axes along which places differ, with their values."""
-        return axes_of(self.profits, self.further)
+        return varying_axes(self.profits, self.further)
 
     @cached_property
     def places(self) -> list[list[int]]:

@@ -11,11 +11,12 @@ from simmpp.plot.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
 from simmpp.report.page.figure import Figure, slug, styles_of
+from simmpp.sweeps.profits import MEASURES
 
-MOST_ABSCISSAS, ENOUGH, MOST_PLATES = 2, 3, 16
+MOST_ABSCISSAS, LEAST_VALUES, MOST_PLATES = 2, 3, 16
 """A measure is data along so many axes; the second has at least so many values, and at most so
 many plates to choose from."""
-MARGIN = 1.06
+HEADROOM = 1.06
 """Factor of room beyond the largest value."""
 TITLES = {
     "time_profit": ("Time profit", "T(object dataflow) / T(policy)"),
@@ -24,7 +25,7 @@ TITLES = {
     "efficiency": ("Efficiency", "speed-up / PEs"),
 }
 STEMS = tuple(measure.replace("_", "-") for measure in TITLES)
-PROFITS, OF_MACHINE = ("time_profit", "message_profit"), ("speedup", "efficiency")
+OF_MACHINE = ("speedup", "efficiency")
 
 
 @dataclass(frozen=True)
@@ -46,9 +47,9 @@ class ProfitData:
 def profit_figures(data: ProfitData) -> Iterator[Figure]:
     """Both profits along the best axes; speed-up and efficiency along the number of PEs."""
     best, *others = abscissas(data.axes)
-    long = (name for name in others if len(data.axes[name]) >= ENOUGH and _is_short(data, name))
-    along = [best, *long][:MOST_ABSCISSAS]
-    for measure in PROFITS:
+    long = [name for name in others if len(data.axes[name]) >= LEAST_VALUES]
+    along = [best, *(name for name in long if _is_short(data, name))][:MOST_ABSCISSAS]
+    for measure in MEASURES:
         title, _ = TITLES[measure]
         for name in along:
             several = len(along) > 1
@@ -100,7 +101,7 @@ def _panels(
         placed = [(number, places[row[arrangement.abscissa]], row) for number, row in numbered]
         curves[title] = list(_curves(data, placed, measure))
     y = _scale(TITLES[measure][0].lower(), chain(*curves.values()))
-    level = 1.0 if measure in PROFITS else None
+    level = 1.0 if measure in MEASURES else None
     return [Panel(title, x, y, of_panel, level=level) for title, of_panel in curves.items()]
 
 
@@ -112,7 +113,7 @@ def _scale(label: str, curves: Iterable[Curve]) -> Scale:
     low, high = min(spread.low for spread in spreads), max(spread.high for spread in spreads)
     if low > 0 and words.is_log(spread.mean for spread in spreads):
         return Scale(label, is_log=True, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
-    return Scale(label, limits=(min(low, 0.0), high * MARGIN))
+    return Scale(label, limits=(min(low, 0.0), high * HEADROOM))
 
 
 Placed = tuple[int, float, Row]

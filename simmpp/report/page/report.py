@@ -18,7 +18,7 @@ from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figure import Figure, figure_data
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
-from simmpp.report.page.groups import GROUPS, FigureGroup
+from simmpp.report.page.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered
@@ -52,7 +52,7 @@ def report_of(folder: Folder) -> Report:
     has_runs = any(points.runs)
     figures = {
         group: list(group.figures(folder, points))
-        for group in GROUPS
+        for group in FIGURE_GROUPS
         if has_runs or not group.of_points
     }
     return Report(folder, points, {group: of for group, of in figures.items() if of})
@@ -129,10 +129,10 @@ def _warning(folder: Folder) -> str:
 def _verdicts(folder: Folder) -> str:
     """How many claims hold, in part, and do not."""
     counts = Counter(claim["holds"] for claim in folder.claims)
-    words = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
+    forms = {HOLDS: (HOLDS, "hold"), IN_PART: (IN_PART, IN_PART), DOES_NOT: (DOES_NOT, "do not")}
     parts = [
         f"{counts[kind]} {one if counts[kind] == 1 else more}"
-        for kind, (one, more) in words.items()
+        for kind, (one, more) in forms.items()
         if counts[kind]
     ]
     return f"Of {len(folder.claims)} claims: {', '.join(parts)}."

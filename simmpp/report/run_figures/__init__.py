@@ -1,1 +1,1 @@
-"""Pictures of one run."""
+"""Pictures of one run: who waited, where messages went, what pixels cost."""

@@ -20,8 +20,8 @@ from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
 
 BLUE, VERMILION, GREEN, _, ORANGE, *_ = (style["color"] for style in STYLES)
-COMPUTE_COLOUR, COMMUNICATION_COLOUR, WAITING_COLOUR = BLUE, ORANGE, "#EDEDED"
-"""Of Okabe and Ito (2008); waiting is light: both colours stand out from it in print too."""
+ACTIVITIES = {"compute_ps": BLUE, "communication_ps": ORANGE, "waiting_ps": "#EDEDED"}
+"""Colours of Okabe and Ito (2008); waiting is light: both stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
 MS = 1e-9
@@ -65,7 +65,7 @@ def _activity(figure: Figure, motion: Motion) -> None:
     when.set_title(f"{motion.title}: what every PE does (makespan {format_ps(motion.makespan_ps)})")
     when.yaxis.set_major_locator(MaxNLocator(integer=True))
     left = np.zeros(nb)
-    for name, color in _ACTIVITIES.items():
+    for name, color in ACTIVITIES.items():
         percent = 100 * getattr(motion, name).sum(axis=1) / max(motion.makespan_ps, 1)
         label = name.removesuffix("_ps")
         shares.barh(np.arange(nb), percent, 1, left, color=color, label=label, linewidth=0)
@@ -74,23 +74,14 @@ def _activity(figure: Figure, motion: Motion) -> None:
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
 
 
-_ACTIVITIES = {
-    "compute_ps": COMPUTE_COLOUR,
-    "communication_ps": COMMUNICATION_COLOUR,
-    "waiting_ps": WAITING_COLOUR,
-}
-
-
 def _mixed(motion: Motion) -> NDArray[np.float64]:
     """Colours of the three activities by their share of each bin: (nb, bins, 3) float64."""
     whole_ps = np.maximum(np.diff(motion.times_ps), 1)[None, :, None]
-    return np.asarray(
-        sum(
-            getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
-            for name, color in _ACTIVITIES.items()
-        ),
-        np.float64,
-    ).clip(0, 1)
+    colours = [
+        getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
+        for name, color in ACTIVITIES.items()
+    ]
+    return np.sum(colours, axis=0, dtype=np.float64).clip(0, 1)
 
 
 def _progress(figure: Figure, motion: Motion) -> None:
@@ -196,7 +187,7 @@ def _memory(figure: Figure, motion: Motion) -> None:
 
 def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -> None:
     """What pixels cost, how far their rays and objects went, and whose they are."""
-    figure.set_size_inches(13, 3.4) if picture is not None else figure.set_size_inches(10, 3.4)
+    figure.set_size_inches(10 if picture is None else 13, 3.4)
     axes = list(figure.subplots(1, 3 if picture is None else 4))
     if picture is not None:
         rendered = axes.pop(0)
@@ -204,12 +195,12 @@ def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -
         rendered.set_title("picture")
         rendered.set_axis_off()
     maps = {
-        "cost (us)": (motion.pixel_cost_ps / 1e6, AMOUNTS),
-        "links crossed for its rays": (motion.pixel_hops, AMOUNTS),
-        "PE it starts on": (motion.pixel_owner, AMOUNTS),
+        "cost (us)": motion.pixel_cost_ps / 1e6,
+        "links crossed for its rays": motion.pixel_hops,
+        "PE it starts on": motion.pixel_owner,
     }
-    for here, (title, (values, colours)) in zip(axes, maps.items(), strict=True):
-        image = here.imshow(values, cmap=colours, interpolation="nearest")
+    for here, (title, values) in zip(axes, maps.items(), strict=True):
+        image = here.imshow(values, cmap=AMOUNTS, interpolation="nearest")
         here.set_title(f"{motion.title}: {title}" if here is axes[0] else title)
         here.set_axis_off()
         figure.colorbar(image, ax=here, shrink=0.85)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from simmpp.report.run_figures.data import Motion
 
-LOADS = "Blues"
-LINKS = LinearSegmentedColormap.from_list(
+LOAD_COLOURS = "Blues"
+LINK_COLOURS = LinearSegmentedColormap.from_list(
     "links", matplotlib.colormaps["YlOrRd"](np.linspace(0.2, 1)), bad="0.9"
 )
 """Without the palest colours, which paper swallows; grey for links that nothing crossed."""
@@ -44,8 +44,8 @@ def draw_torus(figure: Figure, motion: Motion) -> None:
         if z < z_size:
             _draw_layer(axes, motion, z, links, loads)
     for norm, cmap, label in (
-        (links, LINKS, "MB over a link, one way (grey: none)"),
-        (loads, LOADS, "rays held, mean over time"),
+        (links, LINK_COLOURS, "MB over a link, one way (grey: none)"),
+        (loads, LOAD_COLOURS, "rays held, mean over time"),
     ):
         scale = matplotlib.cm.ScalarMappable(norm, cmap)
         figure.colorbar(scale, ax=grid, label=label, aspect=30, pad=0.01)
@@ -59,22 +59,13 @@ def _draw_layer(axes: Axes, motion: Motion, z: int, links: Any, loads: Any) -> N
     places = np.array([pes % x_size, pes // x_size % y_size], float).T
     segments, amounts = _links_of(motion, pes, places)
     used = np.ma.masked_equal(amounts / 1e6, 0)
-    axes.add_collection(LineCollection(segments, array=used, cmap=LINKS, norm=links, linewidths=3))
-    axes.scatter(
-        places[:, 0],
-        places[:, 1],
-        c=motion.load[pes],
-        cmap=LOADS,
-        norm=loads,
-        s=190,
-        ec="0.3",
-        zorder=2,
-    )
-    for pe, (x, y) in zip(pes, places, strict=True):
-        dark = loads(motion.load[pe]) > 0.6
-        axes.annotate(
-            str(pe), (x, y), ha="center", va="center", fontsize=6, color="w" if dark else "k"
-        )
+    lines = LineCollection(segments, array=used, cmap=LINK_COLOURS, norm=links, linewidths=3)
+    axes.add_collection(lines)
+    (x, y), load = places.T, motion.load[pes]
+    axes.scatter(x, y, 190, load, cmap=LOAD_COLOURS, norm=loads, edgecolors="0.3", zorder=2)
+    for pe, place in zip(pes, places, strict=True):
+        colour = "w" if loads(motion.load[pe]) > 0.6 else "k"
+        axes.annotate(str(pe), place, ha="center", va="center", fontsize=6, color=colour)
     axes.set(xlim=(-0.7, x_size - 0.3), ylim=(-0.7, y_size - 0.3), aspect="equal")
     axes.set_title(f"z = {z}", fontsize=8)
 

@@ -8,7 +8,7 @@ from typing import Protocol
 from simmpp.engine.record.log import Sink
 from simmpp.machine.machine import Machine
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.report.timeline.slices import Rows, Timeline, TimelinePart, Window
+from simmpp.report.timeline.slices import Timeline, TimelinePart, Window
 from simmpp.run.point import PolicyRun
 
 SUFFIXES = (".json", ".json.gz", ".parquet")
@@ -43,11 +43,7 @@ class TimelineRecorder:
         self._file.begin(policy.title, self._machine.processors)
         timeline = Timeline(self._machine.processors, self._machine.probe_ps, self._window)
         self._timeline = timeline
-
-        def write(rows: Rows) -> None:
-            self._file.add(timeline.add(rows))
-
-        return write
+        return lambda rows: self._file.add(timeline.add(rows))
 
     def end(self, run: PolicyRun) -> None:
         """The run that was begun last is over."""

@@ -58,18 +58,17 @@ class TimelineTable:
         self._writer.close()
 
     def _table(self, rows: Rows) -> pa.Table:
-        none = {name: rows[name] == NONE for name in ("other", "number", "load")}
+        no_load = rows["load"] == NONE
         columns = {
             "policy": _words(np.full(len(rows), len(self._policies) - 1), self._policies),
             "event": _words(rows["event"], SLICE_KINDS),
             "begin_ps": pa.array(rows["time_ps"]),
             "kind": _words(rows["kind"], MESSAGE_KINDS),
-            "load": pa.array(rows["load"], mask=none["load"]),
-            "ready": pa.array(rows["ready"], mask=none["load"]),
-            "waiting": pa.array(rows["load"] - rows["ready"], mask=none["load"]),
-            "other": pa.array(rows["other"], mask=none["other"]),
-            "number": pa.array(rows["number"], mask=none["number"]),
+            "ready": pa.array(rows["ready"], mask=no_load),
+            "waiting": pa.array(rows["load"] - rows["ready"], mask=no_load),
         }
+        for name in ("other", "number", "load"):
+            columns[name] = pa.array(rows[name], mask=rows[name] == NONE)
         columns |= {n: pa.array(rows[n]) for n in SCHEMA.names if n not in columns}
         return pa.table([columns[name] for name in SCHEMA.names], schema=SCHEMA)
 

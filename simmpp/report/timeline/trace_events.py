@@ -32,9 +32,11 @@ from simmpp.report.timeline.slices import (
 
 PS_PER_US = 10**6
 _NAMES = [f"{event} {kind}".rstrip() for event in SLICE_KINDS for kind in (*MESSAGE_KINDS, "")]
+_CATEGORY = {COMPUTE: "compute", IDLE: "idle"} | dict.fromkeys(COMMUNICATION, "communication")
+_CATEGORIES = [_CATEGORY.get(event, "") for event in range(len(SLICE_KINDS))]
 _COMPRESSION = 3
 
-Text = Any
+Texts = Any
 """A pyarrow array of texts, or one text for all rows."""
 
 
@@ -77,7 +79,7 @@ class TraceEvents:
             self._zipped.close()
         self._file.close()
 
-    def _slices(self, rows: Rows) -> list[Text]:
+    def _slices(self, rows: Rows) -> list[Texts]:
         """Begin and end of each; a PE's come one after the other, as ties need."""
         track = [f'"pid":{self._process},"tid":', _whole(rows["pe"] + 1), ',"ts":']
         return [
@@ -88,7 +90,7 @@ class TraceEvents:
             '"', _arguments(rows), '},\n{"ph":"E",', *track, _us(rows["end_ps"]), "}",
         ]  # fmt: skip
 
-    def _arrows_of(self, rows: Rows, tails_ps: Times) -> list[Text]:
+    def _arrows_of(self, rows: Rows, tails_ps: Times) -> list[Texts]:
         """From the packing of a message, at whose end it departs, to its receipt."""
         numbers = _whole(self._arrows + np.arange(len(rows)))
         self._arrows += len(rows)
@@ -103,7 +105,7 @@ class TraceEvents:
             ',"ts":', _us(rows["time_ps"]), "}",
         ]  # fmt: skip
 
-    def _loads(self, rows: Rows) -> list[Text]:
+    def _loads(self, rows: Rows) -> list[Texts]:
         return [
             f'{{"ph":"C","pid":{self._process},"name":"PE ', _whole(rows["pe"]),
             '","ts":', _us(rows["end_ps"]), ',"args":{"load":', _whole(rows["load"]),
@@ -111,13 +113,13 @@ class TraceEvents:
             ',"waiting":', _whole(rows["load"] - rows["ready"]), "}}",
         ]  # fmt: skip
 
-    def _flights(self, times_ps: Times, in_flight: Times) -> list[Text]:
+    def _flights(self, times_ps: Times, in_flight: Times) -> list[Texts]:
         return [
             f'{{"ph":"C","pid":{self._process},"name":"messages in flight","ts":',
             _us(times_ps), ',"args":{"messages":', _whole(in_flight), "}}",
         ]  # fmt: skip
 
-    def _events(self, n: int, texts: Sequence[Text]) -> None:
+    def _events(self, n: int, texts: Sequence[Texts]) -> None:
         """Write n events, whose pieces of text are ``texts``."""
         if n:
             lines = pc.binary_join_element_wise(",\n", *texts, "")
@@ -134,15 +136,7 @@ class TraceEvents:
         (self._zipped or self._file).write(text)
 
 
-def _category(event: int) -> str:
-    names = {COMPUTE: "compute", IDLE: "idle"} | dict.fromkeys(COMMUNICATION, "communication")
-    return names.get(event, "")
-
-
-_CATEGORIES = [_category(event) for event in range(len(SLICE_KINDS))]
-
-
-def _arguments(rows: Rows) -> Text:
+def _arguments(rows: Rows) -> Texts:
     """What is told of a slice that is selected."""
     rays = _whole(rows["rays"])
     compute = pc.binary_join_element_wise(
@@ -156,11 +150,11 @@ def _arguments(rows: Rows) -> Text:
     return pc.if_else((rows["event"] == COMPUTE) | (rows["kind"] != NONE), about, "")
 
 
-def _whole(numbers: NDArray[np.integer]) -> Text:
+def _whole(numbers: NDArray[np.integer]) -> Texts:
     return pc.cast(pa.array(np.ascontiguousarray(numbers)), pa.string())
 
 
-def _us(times_ps: Times) -> Text:
+def _us(times_ps: Times) -> Texts:
     """Microseconds with six decimals: exact picoseconds."""
     decimals = pc.utf8_lpad(_whole(times_ps % PS_PER_US), 6, "0")
     return pc.binary_join_element_wise(_whole(times_ps // PS_PER_US), decimals, ".")

@@ -24,24 +24,17 @@ QUANTITIES = {"makespan": "makespan_ps", "messages": "messages", **MEASURES}
 """What is compared, and the column that it is made of."""
 CPU = "cpu_s"
 """What rows of a bench tell besides their columns: seconds of the processor."""
-MEASURED = tuple(name + end for name in QUANTITIES for end in ("_error", "_resolution"))
+ERROR_COLUMNS = tuple(name + end for name in QUANTITIES for end in ("_error", "_resolution"))
 
 
-class Runs(NamedTuple):
-    """The runs of one policy at one point, by method and seed."""
-
-    key: Row
-    """What names the point."""
-    policy: str
-    of_method: Mapping[str, Seeds]
-    references: Mapping[str, Seeds]
-    """Those of object dataflow."""
+Runs = Mapping[str, Mapping[str, Seeds]]
+"""The runs of one point, by method and policy."""
 
 
 def bench_columns(keys: Sequence[str]) -> tuple[str, ...]:
     """The columns of ``bench.csv``."""
     about = ("policy", "method", "seeds", "groups", "reference_seeds", "trace_s", CPU)
-    return (*keys, *about, *MEASURED)
+    return (*keys, *about, *ERROR_COLUMNS)
 
 
 def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, float]) -> list[Row]:
@@ -53,13 +46,11 @@ def bench_rows(rows: Iterable[Row], keys: Sequence[str], trace_s: Mapping[str, f
     for (*place, method), policies in by_place(rows, (*keys, METHOD)).items():
         methods.setdefault(tuple(place), {})[str(method)] = policies
     lines: list[Row] = []
-    for names, of_method in methods.items():
+    for names, runs in methods.items():
         key = dict(zip(keys, names, strict=True))
-        references = {method: of.get(REFERENCE, {}) for method, of in of_method.items()}
-        for policy in of_method.get(SIMULATE, {}):  # nothing else can be judged
-            of_policy = {method: of[policy] for method, of in of_method.items() if policy in of}
-            runs = Runs(key, policy, of_policy, references)
-            lines += [row | {"trace_s": trace_s.get(str(key["scene"]), "")} for row in _rungs(runs)]
+        key["trace_s"] = trace_s.get(str(key["scene"]), "")
+        for policy in runs.get(SIMULATE, {}):  # nothing else can be judged
+            lines += [key | rung for rung in _rungs(runs, policy)]
     return lines
 
 
@@ -69,37 +60,36 @@ def seed_counts(method: str, simulated: int) -> list[int]:
     return [2**n for n in range(most.bit_length()) if 2**n <= min(most, max(simulated // 4, 1))]
 
 
-def _rungs(runs: Runs) -> Iterator[Row]:
-    full = runs.of_method.get(SIMULATE, {})
-    for method, of_seed in runs.of_method.items():
-        for count in seed_counts(method, len(full)):
-            seeds = sorted(of_seed)
+def _rungs(runs: Runs, policy: str) -> Iterator[Row]:
+    n_full = len(runs[SIMULATE][policy])
+    for method, policies in runs.items():
+        seeds = sorted(policies.get(policy, {}))
+        for count in seed_counts(method, n_full):
             groups = [seeds[i : i + count] for i in range(0, len(seeds) - count + 1, count)]
-            if groups and len(full) > count + 1:
-                yield _rung(runs, method, groups)
+            if groups and n_full > count + 1:
+                yield _rung(runs, policy, method, groups)
 
 
-def _rung(runs: Runs, method: str, groups: Sequence[Sequence[int]]) -> Row:
-    of_seed = runs.of_method[method]
-    row: Row = {**runs.key, "policy": runs.policy, "method": method}
-    row |= {"seeds": len(groups[0]), "groups": len(groups)}
-    row["reference_seeds"] = len(runs.of_method[SIMULATE]) - len(groups[0])
+def _rung(runs: Runs, policy: str, method: str, groups: Sequence[Sequence[int]]) -> Row:
+    of_seed, count = runs[method][policy], len(groups[0])
+    row: Row = {"policy": policy, "method": method, "seeds": count, "groups": len(groups)}
+    row["reference_seeds"] = len(runs[SIMULATE][policy]) - count
     row[CPU] = fmean(sum(of_seed[seed][CPU] for seed in group) for group in groups)
     for name in QUANTITIES:
-        estimates, true = _values(runs, method, name), _values(runs, SIMULATE, name)
+        estimates, true = (_values(runs[of], policy, name) for of in (method, SIMULATE))
         row[f"{name}_error"] = _error(estimates, true, groups)
         row[f"{name}_resolution"] = _resolution(list(true.values()))
     return row
 
 
-def _values(runs: Runs, method: str, quantity: str) -> dict[int, float]:
+def _values(policies: Mapping[str, Seeds], policy: str, quantity: str) -> dict[int, float]:
     """A quantity of each seed; object dataflow gains nothing over itself, which says nothing."""
-    of_seed, column = runs.of_method[method], QUANTITIES[quantity]
+    of_seed, column = policies[policy], QUANTITIES[quantity]
     if quantity not in MEASURES:
         return {seed: row[column] for seed, row in of_seed.items() if row[column] != ""}
-    if runs.policy == REFERENCE:
+    if policy == REFERENCE:
         return {}
-    base = runs.references[method]
+    base = policies.get(REFERENCE, {})
     both = {seed: [(base[seed], row)] for seed, row in of_seed.items() if seed in base}
     profits = {seed: profits_of(pair, column) for seed, pair in both.items()}
     return {seed: values[0] for seed, values in profits.items() if values}

@@ -12,7 +12,7 @@ from simmpp.sweeps.profits import MEASURES
 
 SECONDS = Scale("processor seconds per point, tracing apart", is_log=True)
 ERROR = Scale("relative error, root mean square", is_log=True)
-SHORT = {"analytical": "A", "analytical-measured": "A-m"}
+METHOD_MARKS = {"analytical": "A", "analytical-measured": "A-m"}
 """Of names of methods, beside their points."""
 
 
@@ -41,7 +41,7 @@ def _curve(rungs: Sequence[Rung], label: str, method: str, measure: str) -> Curv
     of_method = [rung for rung in rungs if rung.method == method]
     points = {rung.seconds: Spread(*[rung.error[measure]] * 3) for rung in of_method}
     if method != SIMULATE:
-        said = {rung.seconds: SHORT.get(method, method) for rung in of_method}
-        return Curve(label, points, notes=said)
-    said = {rung.seconds: f"{rung.seeds}" for rung in of_method}
-    return Curve(label, points, notes=said, floor=of_method[0].resolution[measure])
+        mark = METHOD_MARKS.get(method, method)
+        return Curve(label, points, notes=dict.fromkeys(points, mark))
+    notes = {rung.seconds: f"{rung.seeds}" for rung in of_method}
+    return Curve(label, points, notes=notes, floor=of_method[0].resolution[measure])

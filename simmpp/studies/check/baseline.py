@@ -11,7 +11,6 @@ from __future__ import annotations
 import csv
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
 from simmpp.run.record import read_record, write_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
-from simmpp.studies.check.moves import Tables
+from simmpp.studies.check.moves import Sweep
 from simmpp.sweeps.profits import profit_columns
 
 DIGESTS = "sha256"
@@ -33,14 +32,6 @@ which is a column of its rows."""
 MACHINES, WORKLOADS = "machines", "workloads"
 """What of ``run.json`` explains moves."""
 UPDATE = "run with --update to make one"
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """The tables of a folder and the record of what they are of."""
-
-    tables: Tables
-    record: Mapping[str, Any]
 
 
 def baseline_folder(path: Path) -> Path:
@@ -85,7 +76,7 @@ def read_sweep(folder: Path) -> Sweep:
             raise ValueError(f"{name} is not the file that {RECORD} was written with")
     results = read_csv(folder / RESULTS, COLUMNS)
     profits = read_csv(folder / PROFITS, profit_columns())
-    return Sweep(Tables(results, profits), record)
+    return Sweep(results, profits, record)
 
 
 def _digest(path: Path) -> str:
@@ -97,15 +88,13 @@ def _other_settings(recorded: dict[str, Any], config: Config) -> str:
     """What differs between the settings recorded and these; keys not known then had defaults."""
     here = described(config)
     defaults = described(config_from_mapping({"scene": here["scene"]}))
-    sides = [_merged(defaults, given) for given in (recorded, here)]
-    for side in sides:
-        for key in IRRELEVANT_TO_INTEGERS:
-            side.pop(key, None)
-    return difference(sides[0], sides[1], "in the baseline")
+    before, now = (_merged(defaults, given) for given in (recorded, here))
+    return difference(before, now, "in the baseline")
 
 
 def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    merged = {**defaults, **given}
+    """What is given, over the defaults, without what changes no integer."""
+    merged = {k: v for k, v in {**defaults, **given}.items() if k not in IRRELEVANT_TO_INTEGERS}
     for key in ("picture", "machine", "memory", "placement"):
         if isinstance(given.get(key), dict):
             merged[key] = {**defaults[key], **given[key]}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from simmpp.methods.columns import NUMBERS
 from simmpp.sweeps.matching import extremes, matched, percent
@@ -13,22 +14,24 @@ from simmpp.sweeps.matching import extremes, matched, percent
 Cells = Mapping[str, str]
 """A line of a CSV file, as it is written."""
 
-EXACT = ("effective_fraction", *NUMBERS, "error")
+EXACT_COLUMNS = ("effective_fraction", *NUMBERS, "error")
 """Columns of ``results.csv`` that must be equal unless tolerances are given."""
 GUARDED = ("time_profit", "message_profit", "speedup", "efficiency")
 """Columns of ``profits.csv`` that a tolerance may be given for."""
 DERIVED = tuple(f"{name}{end}" for name in GUARDED[:2] for end in ("_low", "_high", "_min", "_max"))
 """Columns that follow from the others; their last digits are the statistics library's."""
-NOT_KEYS = {*EXACT, *GUARDED, *DERIVED, "engine", "n"}
+NOT_KEYS = {*EXACT_COLUMNS, *GUARDED, *DERIVED, "engine", "n"}
 POINT, THERE, MISSING, NEW = "point", "there", "missing", "new"
 
 
 @dataclass(frozen=True)
-class Tables:
-    """The rows of a sweep's ``results.csv`` and ``profits.csv``."""
+class Sweep:
+    """The tables of a folder, ``results.csv`` and ``profits.csv``, and what they are of."""
 
     results: Sequence[Cells]
     profits: Sequence[Cells]
+    record: Mapping[str, Any] = field(default_factory=dict)
+    """``run.json``."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Move:
         return relative_change(self.baseline, self.now)
 
 
-def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> list[Move]:
+def moves(baseline: Sweep, now: Sweep, tolerances: Mapping[str, Fraction]) -> list[Move]:
     """Everything that moved, profits first; without tolerances nothing may.
 
     With tolerances (of names in GUARDED) only these profits, points and errors are compared.
@@ -62,7 +65,7 @@ def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> 
     allowed = {
         name: tolerances.get(name) for name in GUARDED if not tolerances or name in tolerances
     }
-    exact = ("error",) if tolerances else EXACT
+    exact = ("error",) if tolerances else EXACT_COLUMNS
     return [
         *_of_table(baseline.profits, now.profits, allowed),
         *_of_table(baseline.results, now.results, dict.fromkeys(exact)),
@@ -72,7 +75,7 @@ def moves(baseline: Tables, now: Tables, tolerances: Mapping[str, Fraction]) -> 
 def _of_table(
     baseline: Sequence[Cells], now: Sequence[Cells], allowed: Mapping[str, Fraction | None]
 ) -> Iterator[Move]:
-    old, new = ({key_of(row): row for row in rows} for rows in (baseline, now))
+    old, new = ({key_of_row(row): row for row in rows} for rows in (baseline, now))
     for key, was, is_now in matched(old, new):
         if is_now is None:
             yield Move(key, POINT, THERE, MISSING)
@@ -85,7 +88,7 @@ def _of_table(
                     yield Move(key, name, before, after, tolerance)
 
 
-def key_of(row: Cells) -> tuple[tuple[str, str], ...]:
+def key_of_row(row: Cells) -> tuple[tuple[str, str], ...]:
     """The axes of a row: all columns that are no result."""
     return tuple((name, value) for name, value in row.items() if name not in NOT_KEYS)
 

@@ -99,11 +99,11 @@ def estimate(
     for draw in range(seed, seed + replicates):
         placements = rotated(workload, machine.processors, xs, rules, draw)
         for x, placement in zip(xs, placements, strict=True):
-            at = share(x, workload.n_objects, machine.processors)
+            at = share_of(x, workload.n_objects, machine.processors)
             reference = run(placement, PolicyParameters(REFERENCE))
             for of_policy, policy in zip(nodes, policies, strict=True):
                 of_policy.append(node_of(placement, at, reference, run(placement, policy)))
-    shares = np.array([share(x, workload.n_objects, machine.processors) for x in fractions])
+    shares = np.array([share_of(x, workload.n_objects, machine.processors) for x in fractions])
     return [
         Estimate(policy.title, fraction, *numbers)
         for policy, of_policy in zip(policies, nodes, strict=True)
@@ -116,7 +116,7 @@ def node_fractions(least: Fraction) -> list[Fraction]:
     return [least, *(x for x in NODES if x >= least + APART)]
 
 
-def share(fraction: Fraction, n_objects: int, processors: int) -> float:
+def share_of(fraction: Fraction, n_objects: int, processors: int) -> float:
     """What a fraction comes to: residents of a PE / objects, where its own are always there."""
     if n_objects == 0:
         return 1.0

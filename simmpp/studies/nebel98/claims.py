@@ -17,7 +17,7 @@ from simmpp.studies.nebel98.verdict import Criterion, Verdict, verdict
 from simmpp.sweeps.ratios import RAY, mean
 
 CLASSICAL = (REFERENCE, RAY)
-FEW, MANY = 8, 128
+F3C_PES = (8, 128)
 """PEs between which F3c compares."""
 EXTENSIVELY = 0.5
 """The largest x that counts as "extensively partitioned"."""
@@ -31,7 +31,7 @@ def f3a(evidence: Evidence) -> Verdict:
         "F3a",
         "figure 3 (Tetrahedron5): object dataflow best where the scene is lightly partitioned",
         f"T(ray)/T(object) {span(lightly.values())} at 0.8 <= x < 1",
-        criteria(lightly, evidence.figure3, CLASSICAL, above=1),
+        criteria(lightly, evidence.figure3, CLASSICAL, low=1, strict=True),
     )
 
 
@@ -53,15 +53,16 @@ def f3b(evidence: Evidence) -> Verdict:
 def f3c(evidence: Evidence) -> Verdict:
     """The mean ratio over X at nb = 128 is > 1 and above that at 8."""
     ratios = ray_over_object(evidence.figure3)
+    fewest, most = F3C_PES
     few, many = (
-        mean([value for at, value in ratios.items() if at.processors == nb]) for nb in (FEW, MANY)
+        mean([value for at, value in ratios.items() if at.processors == nb]) for nb in F3C_PES
     )
     return verdict(
         "F3c",
         "figure 3 (Tetrahedron5): object dataflow best where there are many processors",
-        f"mean of T(ray)/T(object) over X: {many:.3g} at nb = {MANY}, {few:.3g} at nb = {FEW}",
-        [Criterion(f"mean at nb = {MANY}", many, low=1, strict=True)],
-        [Criterion(f"the same against nb = {FEW}", many, low=few, strict=True)],
+        f"mean of T(ray)/T(object) over X: {many:.3g} at nb = {most}, {few:.3g} at nb = {fewest}",
+        [Criterion(f"mean at nb = {most}", many, low=1, strict=True)],
+        [Criterion(f"the same against nb = {fewest}", many, low=few, strict=True)],
     )
 
 
@@ -72,14 +73,14 @@ def t1(evidence: Evidence) -> Verdict:
         "T1",
         "section 4.2.2 (64 PEs): object dataflow is more efficient than ray dataflow",
         f"T(ray)/T(object) {span(ratios.values())}",
-        criteria(ratios, evidence.figure4, CLASSICAL, above=1),
+        criteria(ratios, evidence.figure4, CLASSICAL, low=1, strict=True),
     )
 
 
-CLAIMS = (f3a, f3b, f3c, f4a, f4b, f4c, f4d, f5a, f6a, t1, t2)
+PREDICATES = (f3a, f3b, f3c, f4a, f4b, f4c, f4d, f5a, f6a, t1, t2)
 """In the paper's order; those about its model are judged with figure 2."""
 
 
 def judge(evidence: Evidence) -> list[Verdict]:
     """The verdict on every claim about what is simulated."""
-    return [claim(evidence) for claim in CLAIMS]
+    return [claim(evidence) for claim in PREDICATES]

@@ -13,10 +13,10 @@ from simmpp.studies.nebel98.evidence import (
     criteria,
     largest,
     largest_at,
+    mean_profits,
     of_scene,
     partitioned,
     points,
-    profits,
     rank_correlation,
     span,
 )
@@ -51,7 +51,7 @@ def f4a(evidence: Evidence) -> Verdict:
 
     The band: 3.9 to 1.5 for x < 50 %, 1.7 to 1 for x >= 50 %.
     """
-    gains = partitioned(profits(evidence.figure4, MAKESPAN))
+    gains = partitioned(mean_profits(evidence.figure4, MAKESPAN))
     below = {at: value for at, value in gains.items() if at.x < HALF}
     above = {at: value for at, value in gains.items() if at.x >= HALF}
     return verdict(
@@ -66,7 +66,7 @@ def f4a(evidence: Evidence) -> Verdict:
 
 def f4b(evidence: Evidence) -> Verdict:
     """Argmax over (scene, x) is mountain 5, value 3.5 to 4.2."""
-    gains = profits(evidence.figure4, MAKESPAN)
+    gains = mean_profits(evidence.figure4, MAKESPAN)
     best = largest_at(gains)
     own = largest(of_scene(gains, MOUNTAIN5).values())
     others = largest(value for at, value in gains.items() if at.scene != MOUNTAIN5)
@@ -81,7 +81,7 @@ def f4b(evidence: Evidence) -> Verdict:
 
 def f4c(evidence: Evidence) -> Verdict:
     """Pairwise rank correlation over X >= .8; every scene's best x <= .3."""
-    gains = profits(evidence.figure4, MAKESPAN)
+    gains = mean_profits(evidence.figure4, MAKESPAN)
     curves = {scene: of_scene(gains, scene) for scene in evidence.figure4.scenes}
     pairs = {
         f"{a} and {b}": rank_correlation(curves[a], curves[b]) for a, b in combinations(curves, 2)
@@ -98,7 +98,7 @@ def f4c(evidence: Evidence) -> Verdict:
 
 def f4d(evidence: Evidence) -> Verdict:
     """Every scene: profit at its smallest x < its best, and >= 1.8."""
-    gains = profits(evidence.figure4, MAKESPAN)
+    gains = mean_profits(evidence.figure4, MAKESPAN)
     curves = [of_scene(gains, scene) for scene in evidence.figure4.scenes]
     lowest = {min(curve, key=lambda at: at.x): largest(curve.values()) for curve in curves}
     of_best = {at: gains[at] / best for at, best in lowest.items()}
@@ -122,7 +122,7 @@ def f5a(evidence: Evidence) -> Verdict:
 
     The band: 6.1 to 1.7. The correlation is that of the scene's two curves over X.
     """
-    times, messages = (profits(evidence.figure4, column) for column in (MAKESPAN, MESSAGES))
+    times, messages = (mean_profits(evidence.figure4, column) for column in (MAKESPAN, MESSAGES))
     below = {at: value for at, value in messages.items() if at.x < HALF}
     alike = {
         scene: rank_correlation(of_scene(times, scene), of_scene(messages, scene))

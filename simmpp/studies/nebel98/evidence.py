@@ -52,7 +52,7 @@ def ray_over_object(measured: RowIndex) -> Values:
     return {at: mean(measured.ray_over_object(*at)) for at in points(measured)}
 
 
-def profits(measured: RowIndex, column: str, policy: str = CONCURRENT) -> Values:
+def mean_profits(measured: RowIndex, column: str, policy: str = CONCURRENT) -> Values:
     """Object dataflow over a policy: the time profit (of MAKESPAN) or the message profit."""
     return {at: mean(measured.profit(column, *at, policy)) for at in points(measured)}
 
@@ -64,11 +64,9 @@ def criteria(
     low: float = -math.inf,
     high: float = math.inf,
     *,
-    above: float | None = None,
+    strict: bool = False,
 ) -> list[Criterion]:
-    """A criterion for each value, which must lie from low to high, or strictly above."""
-    strict = above is not None
-    low = low if above is None else above
+    """A criterion for each value, which must lie from low to high, or strictly in between."""
     return [
         Criterion(str(at), value, low, high, strict, _accounts(measured, at, policies))
         for at, value in values.items()

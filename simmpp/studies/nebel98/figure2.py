@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from simmpp.common.files import Row, write_csv
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config
 from simmpp.model.analytical import Rays, rays_of
@@ -16,7 +18,6 @@ from simmpp.studies.nebel98.figure2_data import (
     model_times,
     rows_of,
     winner_maps,
-    write_model,
 )
 from simmpp.studies.nebel98.figure2_plot import draw_figure2
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, Verdict
@@ -31,22 +32,33 @@ SAID = {
 
 def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Verdict]:
     """Write figure2.csv, figure2.png and figure2.svg; returns the verdicts on F2a and F2b."""
-    grid = model_grid(config)
-    times = model_times(config, workload, grid)
-    write_model(rows_of(times, workload.name, ANALYTICAL, 0.0), out)
-    costs, rays = costs_of(config.machine_for(config.processors), workload), rays_of(workload)
-    maps = winner_maps(costs, rays, grid, DEFAULT_RATIOS, config.settings.seeds[0])
-    draw_figure2(maps, f"Figure 2: analytical model, {workload.name}", out)
+    times = model_times(config, workload, model_grid(config))
+    rows = rows_of(times, workload.name, ANALYTICAL, 0.0)
+    write_figure2(config, workload, rows, f"Figure 2: analytical model, {workload.name}", out)
+    by = _by(costs_of(config.machine_for(config.processors), workload), rays_of(workload))
     return [
         Verdict(
             claim.claim,
             f"Nebel 1998, figure 2 (model): {SAID[claim.claim]}",
             claim.simulated,
             HOLDS if claim.holds else DOES_NOT,
-            _by(costs, rays),
+            by,
         )
         for claim in claims(times)
     ]
+
+
+def write_figure2(
+    config: Config,
+    workload: Workload,
+    rows: Sequence[Row],
+    heading: str,
+    out: Path,
+    ratios: Sequence[tuple[str, float]] = DEFAULT_RATIOS,
+) -> list[Path]:
+    """Write ``figure2.csv`` and the maps for several cost ratios; returns the paths of these."""
+    write_csv(rows, list(rows[0]), out / "figure2.csv")
+    return draw_figure2(winner_maps(config, workload, ratios), heading, out)
 
 
 def _by(costs: Costs, rays: Rays) -> str:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.files import Row, write_csv
+from simmpp.common.files import Row
 from simmpp.config.config import Config, point_at
-from simmpp.model.analytical import Makespans, Rays, analytical, grouped, rays_of
+from simmpp.model.analytical import Makespans, analytical, grouped, rays_of
 from simmpp.model.border import FRACTIONS, OBJECT, PROCESSORS, RAY, TIE, winners
 from simmpp.model.costs import Costs, costs_of
 from simmpp.model.measured import measured
@@ -22,17 +21,6 @@ from simmpp.placement.place import place
 from simmpp.workload.workload import Workload
 
 ANALYTICAL, MEASURED = "analytical", "analytical-measured"
-MODEL_COLUMNS = (
-    "scene",
-    "processors",
-    "fraction",
-    "method",
-    "imbalance",
-    "object_ps",
-    "ray_ps",
-    "ray_over_object",
-    "winner",
-)
 WINNERS = {RAY: "ray", OBJECT: "object", TIE: "tie"}
 DEFAULT_RATIOS = (("packing", 100.0), ("object", 100.0), ("test", 10.0))
 """Maps beside the machine's own: a group of operations, and how many times as long it takes."""
@@ -146,38 +134,36 @@ def rows_of(times: Makespans, scene: str, method: str, imbalance: float) -> list
     ]
 
 
-def write_model(rows: Sequence[Row], folder: Path) -> None:
-    """Write ``figure2.csv``."""
-    write_csv(rows, MODEL_COLUMNS, folder / "figure2.csv")
-
-
 def winner_maps(
-    costs: Costs, rays: Rays, grid: Grid, ratios: Sequence[tuple[str, float]], seed: int
+    config: Config, workload: Workload, ratios: Sequence[tuple[str, float]]
 ) -> list[WinnerMap]:
     """Maps for the costs themselves and each ratio, without and with imbalance."""
+    costs = costs_of(config.machine_for(config.processors), workload)
     variants = [("this machine", costs)]
     variants += [(f"{name} x {factor:g}", costs.scaled(name, factor)) for name, factor in ratios]
+    rays, seed = grouped(rays_of(workload), FINE_STEPS), config.settings.seeds[0]
+    grid = model_grid(config)
+    own = [float(x) for x in grid.fractions]
+    fine, shares = _fine(grid.processors), np.linspace(0.0, 1.0, FINE_FRACTIONS).tolist()
+
+    def times(costs: Costs, nbs: Sequence[int], xs: Sequence[float], zeta: float) -> Makespans:
+        return analytical(costs, nbs, xs, rays, imbalance=zeta, seed=seed, draws=DRAWS)
+
     return [
-        _winner_map(f"{title}, imbalance {imbalance:g}", scaled, rays, grid, imbalance, seed)
+        WinnerMap(
+            f"{title}, imbalance {imbalance:g}",
+            times(scaled, fine, shares, imbalance),
+            times(scaled, grid.processors, own, imbalance),
+        )
         for imbalance in (0.0, FIGURE_IMBALANCE)
         for title, scaled in variants
     ]
 
 
-def _winner_map(
-    title: str, costs: Costs, rays: Rays, grid: Grid, imbalance: float, seed: int
-) -> WinnerMap:
-    few = grouped(rays, FINE_STEPS)
-    lowest, highest = max(min(grid.processors), 2), max(grid.processors)
+def _fine(processors: Sequence[int]) -> list[int]:
+    """Numbers of PEs that a map is drawn at, from the least to the most of the grid or around."""
+    lowest, highest = max(min(processors), 2), max(processors)
     if highest <= lowest:
         lowest, highest = max(lowest // 2, 2), 2 * lowest
     fine = np.unique(np.geomspace(lowest, highest, FINE_PROCESSORS).round().astype(np.int64))
-    shares = np.linspace(0.0, 1.0, FINE_FRACTIONS)
-    own = [float(x) for x in grid.fractions]
-    return WinnerMap(
-        title,
-        analytical(
-            costs, fine.tolist(), shares.tolist(), few, imbalance=imbalance, seed=seed, draws=DRAWS
-        ),
-        analytical(costs, grid.processors, own, few, imbalance=imbalance, seed=seed, draws=DRAWS),
-    )
+    return [int(nb) for nb in fine]

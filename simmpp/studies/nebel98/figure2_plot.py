@@ -14,14 +14,14 @@ from matplotlib.ticker import NullLocator
 
 from simmpp.model.analytical import Makespans
 from simmpp.model.border import winners
+from simmpp.plot.matplotlib_panels import DOTS_PER_INCH
 from simmpp.studies.nebel98.figure2_data import WinnerMap
 
 RAY_COLOUR, OBJECT_COLOUR = "#cfe3f5", "#e69f00"
 """Light blue and orange differ in lightness too: the map holds in grey and for the colour-blind
 (Okabe and Ito 2008)."""
-DOTS_PER_INCH = 200
 PANELS_ACROSS = 4
-MARGIN = 1.12
+MARK_ROOM = 1.12
 """Room for the marks of the first and the last nb."""
 
 
@@ -44,6 +44,7 @@ def draw_figure2(panels: Sequence[WinnerMap], heading: str, folder: Path) -> lis
     figure.legend(handles=_legend(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     paths = [folder / "figure2.png", folder / "figure2.svg"]
     with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
+        # Not plot's save: it draws the SVG with the PNG's layout, which would be other bytes.
         figure.savefig(paths[0], dpi=DOTS_PER_INCH)
         figure.savefig(paths[1], dpi=DOTS_PER_INCH, metadata={"Date": None})
     return paths
@@ -63,7 +64,7 @@ def _map(axes: Axes, panel: WinnerMap) -> None:
     axes.set_yticks(panel.grid.processors, [str(n) for n in panel.grid.processors])
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(nb.min() / MARGIN, nb.max() * MARGIN)
+    axes.set_ylim(nb.min() / MARK_ROOM, nb.max() * MARK_ROOM)
     axes.tick_params(labelsize=7)
 
 

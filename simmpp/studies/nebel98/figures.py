@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import partial
 
-from simmpp.plot.curves import ON_EACH_PE, PERCENT, Curve, Panel, Scale, Spread, Stated, curve
+from simmpp.plot.curves import ON_EACH_PE, PERCENT, Curve, Panel, Scale, Spread, Stated
 from simmpp.studies.nebel98.claims_concurrent import (
     ACCELERATION,
     FEW,
@@ -26,6 +25,7 @@ from simmpp.sweeps.ratios import (
     CurvePoint,
     Ratios,
     RowIndex,
+    mean,
 )
 
 NAMES = {
@@ -45,10 +45,12 @@ FRACTIONS_OF_6 = (1 / 64, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0)
 def figure3(measured: RowIndex) -> list[Panel]:
     """The reciprocal of ray dataflow's time profit on Tetrahedron5."""
     (scene,) = measured.scenes
+
+    def ratios_of(point: CurvePoint) -> Ratios:
+        return measured.ray_over_object(point.scene, point.processors, point.fraction)
+
     curves = [
-        _over_x(
-            f"{nb} PEs", measured, partial(measured.ray_over_object, scene, nb), (scene, nb, RAY)
-        )
+        curve(f"{nb} PEs", measured, _over_x(measured, scene, nb, RAY), ratios_of)
         for nb in measured.processors
     ]
     title = f"Figure 3: ray over object dataflow, {_name(scene)}"
@@ -75,63 +77,44 @@ def figure6(measured: RowIndex) -> list[Panel]:
     """The acceleration of concurrent dataflow over the fewest PEs, which are 32."""
     numbers = measured.processors
     few = numbers[0]
-    curves = [
-        curve(
-            f"{x * PERCENT:.3g} %",
-            numbers,
-            partial(_acceleration, measured, x, few),
-            partial(_number_of_6, measured, x),
-        )
-        for x in measured.fractions
-        if x in FRACTIONS_OF_6
-    ]
-    linear = Curve("linear", {nb: Spread(*[nb / few] * 3) for nb in numbers}, is_guide=True)
+
+    def ratios_of(point: CurvePoint) -> Ratios:
+        return measured.acceleration(point.scene, point.fraction, few, point.processors)
+
+    curves = []
+    for x in measured.fractions:
+        if x in FRACTIONS_OF_6:
+            points: dict[float, CurvePoint] = {
+                nb: CurvePoint(MOUNTAIN5, nb, x, CONCURRENT) for nb in numbers
+            }
+            curves.append(curve(f"{x * PERCENT:.3g} %", measured, points, ratios_of))
+    curves.append(Curve("linear", {nb: Spread(*[nb / few] * 3) for nb in numbers}, is_guide=True))
     continued = f" continued to {numbers[-1]} PEs" if numbers[-1] > MANY else ""
     title = f"Figure 6{continued}: {_name(MOUNTAIN5)}, concurrent dataflow"
     stated = Stated(MANY / 1.1, MANY * 1.1, ACCELERATION, MANY / FEW, "the paper's: over 2.2")
     nb = Scale("processing elements (PEs)", is_log=True, ticks=tuple(numbers))
     gained = Scale(f"acceleration T({few} PEs) / T(PEs)", is_log=True, ticks=ACCELERATIONS)
-    return [
-        Panel(
-            title,
-            nb,
-            gained,
-            [*curves, linear],
-            [stated],
-            note=_note(measured),
-            legend="of the scene on each PE",
-        )
-    ]
+    note, legend = _note(measured), "of the scene on each PE"
+    return [Panel(title, nb, gained, curves, [stated], note=note, legend=legend)]
 
 
 def rings7(measured: RowIndex) -> list[Panel]:
     """The time profit of every policy on the large scene, and concurrent dataflow's messages."""
     (scene,), (nb,) = measured.scenes, measured.processors
     labels = {RAY: "ray dataflow", CONCURRENT: "concurrent dataflow", REPLICATED: "replicated"}
-    times = [
-        replace(_profit_over_x(label, measured, MAKESPAN, (scene, nb, policy)), style=number)
-        for number, (policy, label) in enumerate(labels.items(), 1)
-    ]
-    messages = _profit_over_x(labels[CONCURRENT], measured, MESSAGES, (scene, nb, CONCURRENT))
-    messages = replace(messages, style=times[1].style)
-    title = f"{_name(scene)}, {nb} PEs: "
+    styles = {policy: style for style, policy in enumerate(labels, 1)}
+
+    def panel(y: Scale, column: str, policies: Iterable[str]) -> Panel:
+        curves = [
+            replace(_profit(labels[p], measured, column, scene, nb, p), style=styles[p])
+            for p in policies
+        ]
+        title = f"{_name(scene)}, {nb} PEs: {y.label}"
+        return Panel(title, ON_EACH_PE, y, curves, level=1, note=_note(measured))
+
     return [
-        Panel(
-            title + "time profit",
-            ON_EACH_PE,
-            Scale("time profit", is_log=True),
-            times,
-            level=1,
-            note=_note(measured),
-        ),
-        Panel(
-            title + "message profit",
-            ON_EACH_PE,
-            Scale("message profit"),
-            [messages],
-            level=1,
-            note=_note(measured),
-        ),
+        panel(Scale("time profit", is_log=True), MAKESPAN, labels),
+        panel(Scale("message profit"), MESSAGES, [CONCURRENT]),
     ]
 
 
@@ -150,8 +133,7 @@ def _profits(what: str, measured: RowIndex, column: str, stated: list[Stated]) -
     """Profits of concurrent dataflow, one curve a scene."""
     (nb,) = measured.processors
     curves = [
-        _profit_over_x(_name(scene), measured, column, (scene, nb, CONCURRENT))
-        for scene in measured.scenes
+        _profit(_name(scene), measured, column, scene, nb, CONCURRENT) for scene in measured.scenes
     ]
     title = f"{what} of concurrent over object dataflow, {nb} PEs"
     axis = Scale(what.partition(": ")[2])
@@ -162,30 +144,29 @@ def _note(measured: RowIndex) -> str:
     return f"means of {measured.seeds} seeds, and their range" if measured.seeds > 1 else "one seed"
 
 
-Of = tuple[str, int, str]
-"""Scene, number of PEs and policy of a curve over x."""
+def _over_x(measured: RowIndex, scene: str, nb: int, policy: str) -> dict[float, CurvePoint]:
+    """The points of a curve over x, by x in per cent."""
+    return {x * PERCENT: CurvePoint(scene, nb, x, policy) for x in measured.fractions}
 
 
-def _over_x(label: str, measured: RowIndex, ratios_at: Callable[[float], Ratios], of: Of) -> Curve:
-    scene, nb, policy = of
-
-    def number_at(x: float) -> int | None:
-        return measured.numbers.get(CurvePoint(scene, nb, x, policy))
-
-    return curve(label, measured.fractions, ratios_at, number_at, unit=PERCENT)
+def _profit(label: str, measured: RowIndex, column: str, scene: str, nb: int, policy: str) -> Curve:
+    points = _over_x(measured, scene, nb, policy)
+    return curve(label, measured, points, lambda point: measured.profit(column, *point))
 
 
-def _profit_over_x(label: str, measured: RowIndex, column: str, of: Of) -> Curve:
-    scene, nb, policy = of
-    return _over_x(label, measured, lambda x: measured.profit(column, scene, nb, x, policy), of)
-
-
-def _number_of_6(measured: RowIndex, x: float, nb: float) -> int | None:
-    return measured.numbers.get(CurvePoint(MOUNTAIN5, int(nb), x, CONCURRENT))
-
-
-def _acceleration(measured: RowIndex, x: float, few: int, nb: float) -> Ratios:
-    return measured.acceleration(MOUNTAIN5, x, few, int(nb))
+def curve(
+    label: str,
+    measured: RowIndex,
+    points: Mapping[float, CurvePoint],
+    ratios_of: Callable[[CurvePoint], Ratios],
+) -> Curve:
+    """The curve of what was measured, by abscissa; points without a result are left out."""
+    measured_at = {at: ratios for at, point in points.items() if (ratios := ratios_of(point))}
+    return Curve(
+        label,
+        {at: Spread(mean(ratios), min(ratios), max(ratios)) for at, ratios in measured_at.items()},
+        rows={at: n for at in measured_at if (n := measured.numbers.get(points[at])) is not None},
+    )
 
 
 def _name(scene: str) -> str:

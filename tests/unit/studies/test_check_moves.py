@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from simmpp.methods.columns import COLUMNS
-from simmpp.studies.check.moves import Move, Tables, lines, moves, moves_by_measure
+from simmpp.studies.check.moves import Move, Sweep, lines, moves, moves_by_measure
 from simmpp.sweeps.matching import percent
 from simmpp.sweeps.profits import profit_columns
 
@@ -32,8 +32,8 @@ def profit(**cells: Any) -> dict[str, str]:
     return {name: str((given | cells).get(name, 1.0)) for name in profit_columns()}
 
 
-def tables(results: list[dict[str, str]], profits: list[dict[str, str]]) -> Tables:
-    return Tables(results, profits)
+def tables(results: list[dict[str, str]], profits: list[dict[str, str]]) -> Sweep:
+    return Sweep(results, profits)
 
 
 def test_equal_tables_have_no_moves_whatever_the_engine() -> None:

@@ -14,7 +14,7 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.profit import ratio
-from simmpp.studies.curve.estimate import Estimate, estimate, node_fractions, share
+from simmpp.studies.curve.estimate import Estimate, estimate, node_fractions, share_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
 from simmpp.workload.trace.tracer import trace
@@ -108,7 +108,7 @@ def test_nodes_start_at_the_least_fraction_and_keep_apart() -> None:
     ],
 )
 def test_share(fraction: Fraction, n_objects: int, expected: float) -> None:
-    assert share(fraction, n_objects, 4) == expected
+    assert share_of(fraction, n_objects, 4) == expected
 
 
 def test_one_processor_has_nothing_to_gain(workload: Workload) -> None:

@@ -6,9 +6,10 @@ import math
 from pathlib import Path
 from typing import Any
 
-from simmpp.plot.curves import Curve, Panel, Scale, Spread, Stated, curve
+from simmpp.plot.curves import Curve, Panel, Scale, Spread, Stated
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.studies.nebel98.evidence import At, rank_correlation
+from simmpp.studies.nebel98.figures import curve
 from simmpp.sweeps.ratios import MAKESPAN, MESSAGES, CurvePoint, RowIndex, mean
 
 
@@ -54,8 +55,12 @@ def test_accounts_are_shares() -> None:
 
 
 def test_curves_are_means_with_the_range_of_the_seeds() -> None:
-    found = curve("c", [0.1, 0.2], lambda x: (1.0, 3.0, 5.0) if x == 0.1 else (), unit=100)
-    assert found == Curve("c", {10.0: Spread(3.0, 1.0, 5.0)})
+    points = {x * 100: CurvePoint("s", 8, x, "ray") for x in (0.1, 0.2, 0.3)}
+    ratios = {0.1: (1.0, 3.0, 5.0), 0.3: (2.0,)}
+    measured = RowIndex(ROWS, {points[10.0]: 7, points[20.0]: 8})
+    drawn = curve("c", measured, points, lambda point: ratios.get(point.fraction, ()))
+    spreads = {10.0: Spread(3.0, 1.0, 5.0), 0.3 * 100: Spread(2.0, 2.0, 2.0)}
+    assert drawn == Curve("c", spreads, rows={10.0: 7})
 
 
 def test_rank_correlation_is_spearmans() -> None:

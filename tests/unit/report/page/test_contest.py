@@ -12,13 +12,13 @@ from simmpp.report.page.contest import (
     ALONE,
     EQUAL,
     SURE,
-    UNKNOWN,
+    TOO_FEW_SEEDS,
     UNSURE,
     Contest,
     contests_of,
     replicated_policies,
 )
-from simmpp.report.page.findings import sentences, span, wins
+from simmpp.report.page.findings import range_text, sentences, wins
 from simmpp.report.page.points import points_of
 
 T_2 = 4.302652729911275
@@ -52,7 +52,7 @@ def test_policies_that_never_differ_are_equal() -> None:
 
 
 def test_one_seed_tells_nothing() -> None:
-    assert only(timed("object", 300) + timed("ray", 100)).certainty == UNKNOWN
+    assert only(timed("object", 300) + timed("ray", 100)).certainty == TOO_FEW_SEEDS
 
 
 def test_a_dataflow_alone_wins_without_a_lead() -> None:
@@ -65,7 +65,7 @@ def test_seeds_that_only_one_has_do_not_count() -> None:
     apart = [*timed("object", 300), failed("object", 1), failed("ray", 0), row("ray", 1)]
     found = only(apart)
     assert math.isnan(found.lead)
-    assert found.certainty == UNKNOWN
+    assert found.certainty == TOO_FEW_SEEDS
 
 
 def test_the_replicated_scene_is_no_dataflow_whatever_its_label() -> None:
@@ -123,4 +123,4 @@ def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
     [((1.0, 1.7123), "1 to 1.71"), ((2.0001, 2.0), "2"), ((), ""), ((1, math.inf), "1 to inf")],
 )
 def test_spans(values: tuple[float, ...], text: str) -> None:
-    assert span(values) == text
+    assert range_text(values) == text

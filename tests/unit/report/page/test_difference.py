@@ -10,10 +10,10 @@ from sweep_rows import failed, row, sweep
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
-from simmpp.report.page.comparison import reasons, verdict
+from simmpp.report.page.comparison import causes, outcome
 from simmpp.report.page.difference import (
     BEYOND,
-    UNKNOWN,
+    TOO_FEW_SEEDS,
     WITHIN,
     Change,
     changes_by_measure,
@@ -44,7 +44,7 @@ def test_equal_sweeps_have_no_changes() -> None:
     rows = sweep(fraction=[0.1, 0.5], processors=[8, 64])
     found = difference_of(folder(rows), folder(rows))
     assert (found.common, found.changes, found.only_before, found.only_after) == (16, [], [], [])
-    assert verdict(found) == "16 points in both; nothing moved."
+    assert outcome(found) == "16 points in both; nothing moved."
 
 
 def test_seeds_are_compared_one_by_one() -> None:
@@ -66,12 +66,12 @@ def test_a_change_within_the_interval_is_none_to_be_sure_of() -> None:
 
 def test_one_seed_tells_nothing() -> None:
     (found,) = changes(timed(100), timed(90)).values()
-    assert found.certainty == UNKNOWN
+    assert found.certainty == TOO_FEW_SEEDS
 
 
 @pytest.mark.parametrize(
     ("after", "certainty"),
-    [((110, 111, 112), BEYOND), ((101, 102, 103), WITHIN), ((110,), UNKNOWN)],
+    [((110, 111, 112), BEYOND), ((101, 102, 103), WITHIN), ((110,), TOO_FEW_SEEDS)],
 )
 def test_without_common_seeds_the_means_intervals_are_compared(
     after: tuple[int, ...], certainty: str
@@ -97,7 +97,7 @@ def test_points_that_only_one_has_are_told() -> None:
     assert found.common == 1
     assert found.only_before == ["x = 10 %, object dataflow"]
     assert found.only_after == ["x = 100 %, object dataflow"]
-    assert verdict(found) == "1 point in both, 1 only before, 1 only after; nothing moved."
+    assert outcome(found) == "1 point in both, 1 only before, 1 only after; nothing moved."
 
 
 def test_failed_points_have_no_changes() -> None:
@@ -107,7 +107,7 @@ def test_failed_points_have_no_changes() -> None:
 
 def test_something_from_nothing_is_infinitely_more() -> None:
     (found,) = changes(timed(0, 0), timed(5, 5)).values()
-    assert (found.ratio, found.certainty) == (math.inf, UNKNOWN)
+    assert (found.ratio, found.certainty) == (math.inf, TOO_FEW_SEEDS)
     assert line(found)["change"] == "+inf %"
 
 
@@ -140,12 +140,12 @@ def test_the_summary_counts_by_measure_and_sure_changes_come_first() -> None:
         "to": "+1 %",
     }
     assert [c.certainty for c in ranked(found.changes)] == [BEYOND, WITHIN]
-    assert verdict(found) == "3 points in both; 2 moved, 1 beyond the 95 % interval."
+    assert outcome(found) == "3 points in both; 2 moved, 1 beyond the 95 % interval."
 
 
 def test_settings_that_differ_are_told() -> None:
     before = folder([], config={"machine": {"preset": "t3e"}}, versions={"numpy": "1"})
     after = folder([], config={"machine": {"preset": "t3d"}}, versions={"numpy": "1"})
-    assert reasons(before, after) == ["config.machine.preset is t3e before, t3d after"]
-    assert reasons(before, before) == []
-    assert reasons(folder([]), folder([])) == []
+    assert causes(before, after) == ["config.machine.preset is t3e before, t3d after"]
+    assert causes(before, before) == []
+    assert causes(folder([]), folder([])) == []

@@ -20,7 +20,8 @@ from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.bar_figures import bar_figures
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
-from simmpp.report.page.profit_figures import PROFITS, ProfitData, profit_figures
+from simmpp.report.page.profit_figures import ProfitData, profit_figures
+from simmpp.sweeps.profits import MEASURES
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
 VALUES: dict[str, Any] = {
@@ -70,7 +71,7 @@ def test_curves_show_each_profit_of_any_sweep_once(rows: list[Row]) -> None:
     for figure in found:
         measure = next(
             m
-            for m in (*PROFITS, "speedup", "efficiency")
+            for m in (*MEASURES, "speedup", "efficiency")
             if figure.stem.startswith(m.replace("_", "-"))
         )
         shown = [
@@ -121,7 +122,7 @@ def test_every_plate_has_files_of_its_own(rows: list[Row]) -> None:
     assert all(re.fullmatch("[a-z0-9][a-z0-9.-]{,120}", stem) for stem in stems)
 
 
-def axes_of(rows: list[Row]) -> dict[str, list[object]]:
+def varying_axes(rows: list[Row]) -> dict[str, list[object]]:
     return points_of(rows, FURTHER).axes
 
 
@@ -131,9 +132,9 @@ def with_further(rows: list[Row]) -> list[Row]:
 
 def test_numbers_run_along_before_texts_and_the_axis_with_most_values_first() -> None:
     rows = with_further(sweep(scene=list("abcde"), processors=[1, 2, 4], fraction=[0.1, 0.5, 1.0]))
-    assert abscissas(axes_of(rows)) == ["fraction", "processors"]
-    assert abscissas(axes_of(with_further(sweep(scene=list("abc"))))) == ["scene"]
-    assert abscissas(axes_of(with_further(sweep()))) == ["policy"]
+    assert abscissas(varying_axes(rows)) == ["fraction", "processors"]
+    assert abscissas(varying_axes(with_further(sweep(scene=list("abc"))))) == ["scene"]
+    assert abscissas(varying_axes(with_further(sweep()))) == ["policy"]
 
 
 def test_an_axis_that_follows_from_the_abscissa_splits_no_curve() -> None:
