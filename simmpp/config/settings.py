@@ -33,8 +33,7 @@ from simmpp.machine.machine import MOST_PROCESSORS
 from simmpp.machine.presets import DEFAULT_PRESET, preset_names
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.parameters import NAME, PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import NAME, POLICIES, PolicyParameters
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import SceneKey
 

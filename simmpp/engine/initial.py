@@ -23,8 +23,7 @@ from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
 from simmpp.policy.compiled_rules import NUMBERS, VIEW, address_of
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES, PolicyParameters
 from simmpp.workload.workload import Workload
 
 
