@@ -135,7 +135,7 @@ class Settings(Strict):
 
     @model_validator(mode="after")
     def _picture_is_traced(self) -> Settings:
-        if self.scene.source.scene is None and "picture" in self.model_fields_set:
+        if self.scene.source.has_own_picture and "picture" in self.model_fields_set:
             raise mistake("picture goes with a scene that is traced, not with scene.workload")
         return self
 
