@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import CEILING, DEFAULT_POLICY, POLICIES
+from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
 
 SHAPES = (

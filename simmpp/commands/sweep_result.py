@@ -12,7 +12,7 @@ from rich.table import Table
 
 from simmpp.commands.terminal import FAILED, notice, output
 from simmpp.config.settings import Settings
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
 

@@ -12,7 +12,7 @@ from simmpp.common.yamlfile import parse_yaml
 from simmpp.config.axes import SAME
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test
-from simmpp.policy.registry import DEFAULT_POLICY
+from simmpp.policy.parameters import DEFAULT_POLICY
 from simmpp.workload.sources import long_scene
 
 Places = dict[KeyPath, Place]

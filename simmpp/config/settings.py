@@ -33,8 +33,7 @@ from simmpp.machine.machine import MOST_PROCESSORS
 from simmpp.machine.presets import DEFAULT_PRESET, preset_names
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.parameters import NAME, PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import NAME, POLICIES, PolicyParameters
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import SceneKey
 
@@ -168,7 +167,7 @@ class Settings(Strict):
 
     @model_validator(mode="after")
     def _picture_is_traced(self) -> Settings:
-        if self.scene.source.scene is None and "picture" in self.model_fields_set:
+        if self.scene.source.has_own_picture and "picture" in self.model_fields_set:
             raise mistake("picture goes with a scene that is traced, not with scene.workload")
         return self
 

@@ -12,6 +12,7 @@ from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
 from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PIGGYBACK, Run
 from simmpp.engine.arrays.views import pes, rays
+from simmpp.engine.pe.step import note_peaks
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -23,8 +24,7 @@ from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
 from simmpp.policy.compiled_rules import NUMBERS, VIEW, address_of
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES, PolicyParameters
 from simmpp.workload.workload import Workload
 
 
@@ -176,6 +176,5 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
         pe.load = pe.n_ready
         pe.settled_load = pe.n_ready
         pe.peak_rays = pe.n_ready
-        pe.peak_object_bytes = pe.held_bytes
-        pe.peak_bytes = pe.held_bytes + pe.n_ready * s.ray_bytes
+        note_peaks(s, pe)
     s.rays_left = pixel_pes.size

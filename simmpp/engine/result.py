@@ -1,14 +1,44 @@
-"""What a run gives back: integers that add up."""
+"""What a run gives back: integers that add up.
+
+A further column of ``results.csv`` is a name in ``COLUMNS`` and a field or property of ``Result``;
+what has to be counted for it is declared in ``arrays.records`` and counted where it happens.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.record.counters import Counters
+from simmpp.common.errors import ModelError
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+
+if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
+    from simmpp.engine.record.counters import Counters
+    from simmpp.engine.state import State
+
+COLUMNS = (
+    "makespan_ps",
+    "messages",
+    "request_messages",
+    "object_messages",
+    "ray_messages",
+    "load_messages",
+    "bytes_sent",
+    "rays",
+    "tests",
+    "rays_sent",
+    "objects_fetched",
+    "compute_ps",
+    "communication_ps",
+    "waiting_ps",
+    "peak_rays",
+    "peak_bytes",
+    "events",
+)
+"""Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,3 +127,49 @@ class Result:
     def objects_fetched(self) -> int:
         """Objects sent as answers to requests: one in each object message."""
         return self.object_messages
+
+
+def concluded(
+    state: State, arrivals: int, policy: str, engine: str, log: NDArray[np.void] | None
+) -> Result:
+    """Clip the accounts at the makespan and check that the machine lost nothing."""
+    makespan_ps = state["last_ray_ps"]
+    overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
+    communication_ps = state.pes["communication_ps"] - overrun_ps
+    compute_ps = state.pes["compute_ps"].copy()
+    waiting_ps = makespan_ps - compute_ps - communication_ps
+    sent_by_kind, bytes_sent = state.sent_until(makespan_ps)
+    if (waiting_ps < 0).any() or (communication_ps < 0).any():
+        raise ModelError(f"the accounts of a PE exceed the makespan of {makespan_ps} ps")
+    return Result(
+        policy=policy,
+        engine=engine,
+        makespan_ps=makespan_ps,
+        messages_by_kind=sent_by_kind,
+        messages_received=state["received"],
+        bytes_sent=bytes_sent,
+        rays=state["rays_done"],
+        tests=state["tests"],
+        rays_sent=state["rays_sent"],
+        compute_ps=compute_ps,
+        communication_ps=communication_ps,
+        waiting_ps=waiting_ps,
+        pe_peak_rays=state.pes["peak_rays"].copy(),
+        pe_peak_bytes=state.pes["peak_bytes"].copy(),
+        pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
+        events=state["activities"] + arrivals,
+        rules_never_fired=_never_fired(state, sent_by_kind),
+        log=log,
+        counters=state.counters() if state["record_counters"] else None,
+        ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
+        tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
+        tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
+    )
+
+
+def _never_fired(state: State, sent_by_kind: tuple[int, int, int, int]) -> tuple[str, ...]:
+    fired = {
+        "send": not state["sends"] or sent_by_kind[RAYS] > 0,
+        "ask": not state["asks"] or sent_by_kind[REQUEST] > 0,
+    }
+    return tuple(rule for rule, it_did in fired.items() if not it_did)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import entry_point, kernel, njit
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import ARRAYS, COUNTERS, PARAMETERS, REPORT, RUN
-from simmpp.engine.arrays.records import BINS, SIZES, Run
+from simmpp.engine.arrays.records import BINS, NONE, SIZES, Run
 from simmpp.engine.arrays.views import message_marks
 from simmpp.engine.record.counters import Counters, end_counting
 from simmpp.engine.record.log import LOG_ROWS, Sink, hand_on, hand_on_last
@@ -87,6 +87,15 @@ class State:
             end_ps = self["last_ray_ps"]
             self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
             hand_on_last(self._logged(), end_ps, self.log)
+
+    def sent_until(self, end_ps: int) -> tuple[tuple[int, int, int, int], int]:
+        """Messages by kind and bytes that had departed then; only load messages can be later."""
+        used = self.messages[: self.arrays["message_marks"][USED]]
+        late = used[(used["kind"] != NONE) & (used["depart_ps"] > end_ps)]
+        by_kind = self.arrays["sent_by_kind"] - np.bincount(late["kind"], minlength=4)
+        late_bytes = int(late["payload_bytes"].sum()) + self["header_bytes"] * len(late)
+        requests, objects, rays, loads = by_kind.tolist()
+        return (requests, objects, rays, loads), self["bytes_sent"] - late_bytes
 
     def counters(self) -> Counters:
         """What was counted; the run must be over."""

@@ -26,6 +26,7 @@ OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
 """In the order of MESSAGE_KINDS."""
+_WORDS = [key for key, hint in get_type_hints(Machine).items() if get_origin(hint) is Literal]
 
 
 def key_of(field: str) -> str:
@@ -114,6 +115,10 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
             elif isinstance(value, Strict):
                 given |= _numbers(value, f"{key}.")
         return given
+
+    def words(self) -> dict[str, str]:
+        """The choices, which no preset makes: ``contention``."""
+        return {key: value for key, value in self if key in _WORDS}
 
 
 def _numbers(model: Strict, prefix: str) -> dict[str, int]:

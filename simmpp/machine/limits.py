@@ -65,8 +65,7 @@ def _longest_dispatch_ps(workload: Workload, machine: Machine) -> int:
     """No dispatch sends more than a request per ray and object, and a batch and a load per PE."""
     messages = workload.n_rays + workload.n_objects + 2 * machine.processors
     costs = (*machine.pack, *machine.unpack)
-    startup_ps = machine.send_startup_ps + machine.receive_startup_ps + machine.probe_ps
-    fixed_ps = startup_ps + max(cost.fixed_ps for cost in costs)
+    fixed_ps = machine.per_message_ps + max(cost.fixed_ps for cost in costs)
     copied_bytes = _largest_payload_bytes(workload, machine) + messages * machine.request_bytes
     rates = [cost.bytes_per_s for cost in costs if cost.bytes_per_s]
     copy_ps = copied_bytes * PS_PER_S // min(rates) if rates else 0

@@ -125,6 +125,11 @@ class Machine:
     """Where each constant comes from, by its dotted key; values without a document say ESTIMATE."""
 
     @property
+    def per_message_ps(self) -> int:
+        """No message costs a PE more than this and its copy: ``limits`` counts on it."""
+        return self.send_startup_ps + self.receive_startup_ps + self.probe_ps
+
+    @property
     def processors(self) -> int:
         """Number of PEs, nb in the paper."""
         x, y, z = self.shape

@@ -125,7 +125,7 @@ def machine(
         chosen.constants.flat() | changed,
         name=preset,
         shape=torus_shape(processors, shape or overrides.shape),
-        contention=overrides.contention,
+        **overrides.words(),
         sources=sources | dict.fromkeys(changed, OVERRIDDEN),
     )
 

@@ -1,7 +1,7 @@
 """Which PEs a network joins and how: one object, and two functions that compiled code calls.
 
-A further topology is a file like ``torus``, a line in ``TOPOLOGIES`` and in each function here,
-and its drawing.
+A further topology is a file like ``torus``, a line in TOPOLOGIES and in each function here, and its
+word in a field of ``Machine``. Its links are drawn if ``report.run_figures.drawing`` knows how.
 """
 
 from __future__ import annotations
@@ -38,6 +38,9 @@ class Topology(Protocol):
     @property
     def sizes(self) -> tuple[int, int, int]:
         """What the compiled functions need to know."""
+
+    def by_link(self, of_rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """What there is of each row (n_links,), of the links only, arranged for a drawing."""
 
     def __str__(self) -> str: ...
 

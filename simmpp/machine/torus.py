@@ -18,6 +18,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import prod
 
+import numpy as np
+from numpy.typing import NDArray
+
 from simmpp.common.compiled import kernel, njit
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
@@ -54,6 +57,10 @@ class Torus:
     def diameter(self) -> int:
         """Most links between two PEs."""
         return sum(size // 2 for size in self.sizes)
+
+    def by_link(self, of_rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """What there is of each row by PE and DIRECTIONS: (nb, 6), without the ports."""
+        return of_rows.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
 
 
 @kernel

@@ -4,31 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from simmpp.engine import result
+
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
 KEYS = (*PLACE, "effective_fraction", "policy", "seed")
 METHOD = "method"
 """A key as well where a sweep changes it."""
-NUMBERS = (
-    "makespan_ps",
-    "messages",
-    "request_messages",
-    "object_messages",
-    "ray_messages",
-    "load_messages",
-    "bytes_sent",
-    "rays",
-    "tests",
-    "rays_sent",
-    "objects_fetched",
-    "compute_ps",
-    "communication_ps",
-    "waiting_ps",
-    "peak_rays",
-    "peak_bytes",
-    "events",
-)
-"""Integers of a result; times of PEs are sums over them. Empty where the method does not know."""
+NUMBERS = result.COLUMNS
+"""Integers of a run; empty where the method does not know."""
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 

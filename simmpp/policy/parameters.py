@@ -1,4 +1,8 @@
-"""What a user sets of a policy: its name and the numbers that its two rules read."""
+"""The policies, and what a user sets of one: its name and the numbers that its two rules read.
+
+A further policy is a file like ``concurrent``, a line in POLICIES, and a field of PolicyParameters
+for each number of its own.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +28,22 @@ from simmpp.common.strict import (
 )
 from simmpp.common.units import picoseconds, share, shown
 from simmpp.common.validate import MOST_COUNT, whole
-from simmpp.policy.registry import DEFAULT_POLICY, POLICIES
+from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
+from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
+from simmpp.policy.ray_dataflow import RAY_DATAFLOW
+from simmpp.policy.replicated import REPLICATED
+from simmpp.policy.rules import DataflowPolicy
+
+POLICIES: dict[str, DataflowPolicy] = {
+    "object": OBJECT_DATAFLOW,
+    "ray": RAY_DATAFLOW,
+    "concurrent": CONCURRENT_DATAFLOW,
+    "replicated": REPLICATED,
+}
+REFERENCE, CEILING = "object", "replicated"
+"""Run with every point: what profits are measured against, and no dataflow at all."""
+DEFAULT_POLICY = "concurrent"
+"""What a configuration that names none compares with object dataflow."""
 
 LoadInfo = Literal["piggyback", "exact", "none"]
 

@@ -1,8 +1,11 @@
-"""What a rule sees: one record, which the engine fills before it asks."""
+"""What a rule sees: one record, which is filled before each question."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from simmpp.common.compiled import kernel
+from simmpp.machine.topology import Network, hops
 
 
 class View:
@@ -10,7 +13,7 @@ class View:
 
     Behind these come the policy's own numbers: every field of ``PolicyParameters`` that holds a
     number, by its name (``view.batch``), a share of n0 / nb as the floor of that many rays. A
-    further input is a line here and its value in ``engine.pe.dispatch``.
+    further input is a line here and its value in ``show``.
     """
 
     load: int
@@ -31,3 +34,14 @@ class View:
 
         def __getattr__(self, number: str) -> int:
             """One of the policy's own numbers."""
+
+
+@kernel
+def show(view: View, s: Any, pe: Any, network: Network, me: int, owner: int, waiting: int) -> None:
+    """Fill in what either rule is shown; what it may know of loads is up to the engine.
+
+    ``s`` and ``pe`` are the engine's records of the run and of the PE ``me`` that decides.
+    """
+    view.load, view.waiting = pe.load, waiting
+    if s.knows_hops:
+        view.hops = hops(network, me, owner)

@@ -18,8 +18,7 @@ from simmpp.machine.machine import Machine
 from simmpp.methods.table import SIMULATE
 from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import CEILING, POLICIES, REFERENCE
+from simmpp.policy.parameters import CEILING, POLICIES, REFERENCE, PolicyParameters
 from simmpp.workload.workload import Workload
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from simmpp.common.errors import ConfigError
 from simmpp.engine.result import Result
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.sweeps.grid import Comparison
 from simmpp.sweeps.journal import Outcome, Results
 from simmpp.sweeps.plan import Plan, PlannedPoint

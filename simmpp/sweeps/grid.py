@@ -11,8 +11,7 @@ from math import prod
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted
 from simmpp.config.config import Config, described, point_at
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE, PolicyParameters
 from simmpp.sweeps.stopping import first_seeds
 
 MOST_POINTS = 1_000_000

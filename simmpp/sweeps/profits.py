@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.intervals import interval

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import PLACE
-from simmpp.policy.registry import CEILING, REFERENCE
+from simmpp.policy.parameters import CEILING, REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 

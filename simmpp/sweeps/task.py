@@ -12,8 +12,7 @@ from simmpp.config.config import Config
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import CEILING, POLICIES
+from simmpp.policy.parameters import CEILING, POLICIES, PolicyParameters
 from simmpp.sweeps.grid import GridPoint
 
 

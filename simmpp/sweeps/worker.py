@@ -25,8 +25,7 @@ from simmpp.methods.table import METHODS, Method
 from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES, PolicyParameters
 from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
 from simmpp.sweeps.journal import Outcome

@@ -24,6 +24,10 @@ class RaySource(Protocol):
     def scene(self) -> Callable[[], Scene] | None:
         """Makes the scene that is rendered; None where there are rays, but no geometry."""
 
+    @property
+    def has_own_picture(self) -> bool:
+        """Which rays there are is settled, whatever the key ``picture`` says."""
+
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """What the workload is called, and its digest, without tracing it."""
 
@@ -38,6 +42,7 @@ class SceneSource:
     """Rays that are traced here, in a scene."""
 
     scene: Callable[[], Scene]
+    has_own_picture: bool = False
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The scene's name; the digest of all that the tracer would read."""
@@ -61,6 +66,7 @@ class FileSource:
 
     file: str
     scene: None = None
+    has_own_picture: bool = True
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The file's stem; the digest of what the file holds, which has to be read for it."""

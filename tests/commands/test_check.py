@@ -14,7 +14,7 @@ from calls import begin_in, refused, simmpp
 from click.testing import Result
 
 from simmpp.machine import presets
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 from simmpp.policy.view import View
 from simmpp.studies.check import baseline
 

@@ -18,7 +18,7 @@ from implementations import run
 
 from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import ENGINES
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 from simmpp.policy.rules import DataflowPolicy, Rule
 from simmpp.policy.view import View
 

@@ -15,7 +15,7 @@ from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 
 pytestmark = pytest.mark.parametrize("engine", ENGINES)
 many = settings(max_examples=30, deadline=None, derandomize=True)

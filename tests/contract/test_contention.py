@@ -17,7 +17,7 @@ from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.simulate import ENGINES, simulate
 from simmpp.machine.machine import UNLIMITED
 from simmpp.machine.torus import LINKS, NO_CONTENTION
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 
 many = settings(max_examples=30, deadline=None, derandomize=True)
 

@@ -15,7 +15,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.torus import LINKS, NO_CONTENTION
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 from simmpp.scene.scene import Camera, Scene
 
 PICTURE = simmpp.Picture(resolution=4)

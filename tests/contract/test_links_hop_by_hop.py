@@ -16,7 +16,7 @@ from traffic import arrivals_ps
 
 from simmpp.machine.machine import Machine
 from simmpp.machine.torus import LINKS
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 
 SHAPES = ((2, 1, 1), (5, 1, 1), (4, 4, 1), (3, 3, 3), (4, 3, 2))
 

@@ -14,7 +14,7 @@ import simmpp
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.placement import Owners, Pixels, Residents
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.verify import verify
 

@@ -24,8 +24,7 @@ from simmpp.methods.case import Case
 from simmpp.methods.columns import result_columns
 from simmpp.methods.simulation import integers
 from simmpp.methods.table import METHODS, SIMULATE, Method
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES, PolicyParameters
 from simmpp.run.inputs import workload_of
 from simmpp.run.point import make_point, run_point
 from simmpp.run.rows import in_order, row

@@ -19,8 +19,7 @@ from oracles.state import PE, Message
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES, PolicyParameters
 from simmpp.policy.rules import DataflowPolicy
 from simmpp.workload.workload import Workload
 

@@ -40,8 +40,8 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.misses import drop_if_idle, set_peer_sendable, set_unasked, withdraw
 from simmpp.engine.pe.sending import send_load, send_rays, send_request
 from simmpp.engine.record.counters import note_work
-from simmpp.machine.topology import hops
 from simmpp.policy.compiled_rules import allows
+from simmpp.policy.view import show
 
 
 @kernel
@@ -76,9 +76,7 @@ def _send_rays(s: Run, me: int, now_ps: int) -> int:
         peer = peer_rows(s)[peer_row]
         owner = peer.key % s.processors
         _show_load(s, peer, owner, clock_ps)
-        view.load, view.waiting = pe.load, peer.sendable
-        if s.knows_hops:
-            view.hops = hops(topology(s), me, owner)
+        show(view, s, pe, topology(s), me, owner, peer.sendable)
         if allows(s.may_send, view):
             n_rays = peer.sendable
             head, tail = _take_rays(s, me, peer_row)
@@ -148,9 +146,7 @@ def _ask_for_objects(s: Run, me: int, now_ps: int) -> int:
         miss_row = sort_items(s)[i]
         miss = miss_rows(s)[miss_row]
         obj = miss.key % s.n_objects
-        view.load, view.waiting = pe.load, miss.unasked
-        if s.knows_hops:
-            view.hops = hops(topology(s), me, owners(s)[obj])
+        show(view, s, pe, topology(s), me, owners(s)[obj], miss.unasked)
         if allows(s.may_ask, view):
             requests = 1 if s.merge_requests else miss.unasked
             if miss.requests == 0:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find, give_back
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Run
+from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Row, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     itinerary_objects,
@@ -76,9 +76,15 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
         next_ps = receive(s, me, message, now_ps)
     else:
         next_ps = compute(s, me, now_ps)
+    note_peaks(s, pe)
+    return next_ps
+
+
+@kernel
+def note_peaks(s: Run, pe: Row) -> None:
+    """The most that a PE holds at the start or after the work of an activity."""
     pe.peak_object_bytes = max(pe.peak_object_bytes, pe.held_bytes)
     pe.peak_bytes = max(pe.peak_bytes, pe.held_bytes + pe.load * s.ray_bytes)
-    return next_ps
 
 
 @kernel

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from statistics import fmean
 
-from simmpp.policy.registry import CEILING
+from simmpp.policy.parameters import CEILING
 from simmpp.report.page.points import Points
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs

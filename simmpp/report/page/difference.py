@@ -15,7 +15,7 @@ from statistics import fmean
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps
 from simmpp.methods.columns import PLACE
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page import words
 from simmpp.report.page.contest import TOO_FEW_SEEDS
 from simmpp.report.page.folder import Folder

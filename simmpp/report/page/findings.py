@@ -10,7 +10,7 @@ from itertools import groupby
 from statistics import median
 
 from simmpp.common.units import counted
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.contest import (

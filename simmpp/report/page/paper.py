@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from simmpp.common.files import Row
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points

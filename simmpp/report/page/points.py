@@ -9,7 +9,7 @@ from statistics import fmean
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import PLACE
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.arrangement import varying_axes
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order

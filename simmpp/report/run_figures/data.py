@@ -19,7 +19,6 @@ from simmpp.machine.topology import (
     next_link,
     topology_of,
 )
-from simmpp.machine.torus import DIRECTIONS, ROWS_PER_PE
 from simmpp.run.point import Point, PolicyRun
 
 MARKS = (95, 99, 100)
@@ -31,8 +30,7 @@ class Motion:
     """All that the pictures of one run show; nb PEs, B bins of time, integers where not said."""
 
     title: str
-    shape: tuple[int, int, int]
-    """Of the torus."""
+    topology: Topology
     makespan_ps: int
     bin_ps: int
     """Width of a bin of time; the last one ends with the run."""
@@ -57,7 +55,7 @@ class Motion:
     hops: Ints
     """(h,): messages that crossed 0, 1, ... links."""
     link_bytes: Ints
-    """(nb, 6): bytes over each link, in the order of ``machine.links.DIRECTIONS``."""
+    """Bytes over each link, as the topology arranges them."""
     load: NDArray[np.float64]
     """(nb,) float64: mean number of rays held."""
     resident_bytes: Ints
@@ -111,7 +109,7 @@ def motion_of(point: Point, run: PolicyRun) -> Motion:
     largest = int(np.flatnonzero(counters.sizes.any(axis=0)).max(initial=0))
     return Motion(
         title=run.parameters.title,
-        shape=machine.shape,
+        topology=topology,
         makespan_ps=result.makespan_ps,
         bin_ps=bin_ps,
         compute_ps=compute_ps,
@@ -124,7 +122,7 @@ def motion_of(point: Point, run: PolicyRun) -> Motion:
         bytes=counters.bytes,
         sizes=counters.sizes[:, : largest + 1],
         hops=hops_of(topology, counters.messages),
-        link_bytes=by_direction(bytes_over_links(topology, counters.bytes)),
+        link_bytes=topology.by_link(bytes_over_links(topology, counters.bytes)),
         load=counters.load_ps / max(result.makespan_ps, 1),
         resident_bytes=resident,
         transient_bytes=result.pe_peak_object_bytes - resident,
@@ -158,11 +156,6 @@ def _add_over_links(network: Network, traffic: Ints, total: Ints) -> None:
             while here != destination and traffic[source, destination] > 0:
                 link, here = next_link(network, here, destination)
                 total[link] += traffic[source, destination]
-
-
-def by_direction(of_links: Ints) -> Ints:
-    """The links of a torus by PE and direction (nb, 6), without the ports."""
-    return of_links.reshape(-1, ROWS_PER_PE)[:, : len(DIRECTIONS)]
 
 
 def hops_of(topology: Topology, messages: Ints) -> Ints:

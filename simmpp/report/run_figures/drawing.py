@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.units import format_ps
 from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.torus import Torus
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
 from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
@@ -24,6 +25,9 @@ ACTIVITIES = {"compute_ps": BLUE, "communication_ps": ORANGE, "waiting_ps": "#ED
 """Colours of Okabe and Ito (2008); waiting is light: both stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
+Drawing = Callable[[Figure, Motion], None]
+NETWORKS: dict[type, dict[str, Drawing]] = {Torus: {"torus": draw_torus}}
+"""What is drawn of the links of each topology."""
 MS = 1e-9
 """Picoseconds to milliseconds."""
 
@@ -35,10 +39,10 @@ def draw_motion(
 
     ``picture`` (rows, columns, 3) uint8 is what was rendered, if there is a scene.
     """
-    figures: dict[str, Callable[[Figure, Motion], None]] = {
+    figures: dict[str, Drawing] = {
         "activity": _activity,
         "progress": _progress,
-        "torus": draw_torus,
+        **NETWORKS.get(type(motion.topology), {}),
         "traffic": _traffic,
         "memory": _memory,
         "pixels": lambda figure, motion: _pixels(figure, motion, picture),

@@ -28,7 +28,7 @@ _STUB = 0.45
 
 def draw_torus(figure: Figure, motion: Motion) -> None:
     """One map for each z: x to the right, y up; links along z as diagonal stubs."""
-    x_size, y_size, z_size = motion.shape
+    x_size, y_size, z_size = motion.topology.sizes
     columns = min(z_size, _MOST_COLUMNS, max(1, 16 // x_size))
     rows = -(-z_size // columns)
     figure.set_size_inches(
@@ -53,7 +53,7 @@ def draw_torus(figure: Figure, motion: Motion) -> None:
 
 
 def _draw_layer(axes: Axes, motion: Motion, z: int, links: Any, loads: Any) -> None:
-    x_size, y_size, _ = motion.shape
+    x_size, y_size, _ = motion.topology.sizes
     first = x_size * y_size * z
     pes = np.arange(first, first + x_size * y_size)
     places = np.array([pes % x_size, pes // x_size % y_size], float).T
@@ -78,7 +78,7 @@ def _links_of(
     segments, amounts = [], []
     for pe, place in zip(pes, places, strict=True):
         for direction, way in enumerate(ways):
-            size = motion.shape[direction // 2]
+            size = motion.topology.sizes[direction // 2]
             if size == 1 or (size == 2 and direction % 2):  # such a link is not there
                 continue
             step = np.array(way, float)

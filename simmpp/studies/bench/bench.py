@@ -17,7 +17,7 @@ from simmpp.config.settings import long_policies
 from simmpp.methods.columns import PLACE
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.plot.matplotlib_panels import draw
-from simmpp.policy.registry import DEFAULT_POLICY, REFERENCE
+from simmpp.policy.parameters import DEFAULT_POLICY, REFERENCE
 from simmpp.run.provenance import result_versions
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
 from simmpp.studies.bench.figure import bench_panels

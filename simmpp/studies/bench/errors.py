@@ -16,7 +16,7 @@ from typing import NamedTuple
 from simmpp.common.files import Row
 from simmpp.methods.columns import METHOD
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.run.rows import Seeds, by_place
 from simmpp.sweeps.profits import MEASURES, profits_of
 

@@ -23,8 +23,7 @@ from simmpp.machine.machine import Machine
 from simmpp.placement.place import rotated
 from simmpp.placement.placement import Placement, PlacementRules
 from simmpp.placement.residents import resident_count
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE, PolicyParameters
 from simmpp.run.profit import ratio
 from simmpp.studies.curve.smooth import smooth
 from simmpp.workload.workload import Workload

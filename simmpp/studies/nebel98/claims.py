@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.studies.nebel98.claims_concurrent import f4a, f4b, f4c, f4d, f5a, f6a, t2
 from simmpp.studies.nebel98.evidence import Evidence, criteria, partitioned, ray_over_object, span
 from simmpp.studies.nebel98.verdict import Criterion, Verdict, verdict

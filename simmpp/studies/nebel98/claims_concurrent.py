@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from simmpp.policy.registry import REFERENCE
+from simmpp.policy.parameters import REFERENCE
 from simmpp.studies.nebel98.evidence import (
     At,
     Evidence,

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from simmpp.policy.compiled_rules import NUMBERS, VIEW, address_of
-from simmpp.policy.registry import POLICIES
+from simmpp.policy.parameters import POLICIES
 from simmpp.policy.rules import DataflowPolicy
 from simmpp.policy.view import View
 
