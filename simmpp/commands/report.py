@@ -9,9 +9,9 @@ import click
 from simmpp.commands import options
 from simmpp.commands.terminal import notice, progress_bars
 from simmpp.report.page.beside import FIGURES_FOLDER
+from simmpp.report.page.figures.stills import write_stills
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.report import PAGE, Report, follow, report_of, write_page
-from simmpp.report.page.stills import write_stills
 
 
 @click.command(

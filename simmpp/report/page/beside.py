@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from simmpp.report.page.figures.groups import FIGURE_GROUPS
 from simmpp.report.page.folder import undamaged
-from simmpp.report.page.groups import FIGURE_GROUPS
 
 TOPICS = {"sensitivity": "Sensitivity"}
 """Stems of files, as a whole or to the first hyphen, and what they are about."""

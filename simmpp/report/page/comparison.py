@@ -8,9 +8,9 @@ from simmpp.common.files import write_text
 from simmpp.common.units import counted
 from simmpp.report.page.arrangement import varying_axes
 from simmpp.report.page.difference import BEYOND, SideBySide, changes_by_measure, line, ranked
-from simmpp.report.page.figure import Figure, figure_data
+from simmpp.report.page.figures.figure import Figure, figure_data
+from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.folder import Folder
-from simmpp.report.page.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.template import rendered
 from simmpp.run.provenance import difference
 

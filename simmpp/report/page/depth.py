@@ -10,7 +10,7 @@ from simmpp.methods.columns import NUMBERS
 from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import KEY_AXES
-from simmpp.report.page.figure import styles_of
+from simmpp.report.page.figures.figure import styles_of
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points
 from simmpp.sweeps.profits import MEASURES, STATISTICS
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from simmpp.plot.curves import Panel
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.report.page.arrangement import varying_axes
+from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
+from simmpp.report.page.figures.stills import titled
 from simmpp.report.page.folder import numbers_of
-from simmpp.report.page.profit_figures import ProfitData, profit_figures
-from simmpp.report.page.stills import titled
 from simmpp.sweeps.profits import profit_columns
 
 NOTE = "wide and pale: before"

@@ -15,10 +15,10 @@ from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
-from simmpp.report.page.figure import Figure, figure_data
+from simmpp.report.page.figures.figure import Figure, figure_data
+from simmpp.report.page.figures.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
-from simmpp.report.page.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered

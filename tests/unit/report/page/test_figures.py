@@ -17,10 +17,10 @@ from simmpp.common.files import Row
 from simmpp.plot.curves import Bars, Panel
 from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page.arrangement import abscissas, arrange
-from simmpp.report.page.bar_figures import bar_figures
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figures.bar_figures import bar_figures
+from simmpp.report.page.figures.figure import Figure
+from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
-from simmpp.report.page.profit_figures import ProfitData, profit_figures
 from simmpp.sweeps.profits import MEASURES
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])

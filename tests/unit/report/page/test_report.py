@@ -16,11 +16,11 @@ from simmpp.methods.columns import NUMBERS, result_columns
 from simmpp.plot.plotly_panels import script
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
+from simmpp.report.page.figures.paper import paper_figures
+from simmpp.report.page.figures.stills import write_stills
 from simmpp.report.page.folder import Folder, read_folder
-from simmpp.report.page.paper import paper_figures
 from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
-from simmpp.report.page.stills import write_stills
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from simmpp.report.page import accuracy, bar_figures, paper, profit_figures
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figures import accuracy, bar_figures, paper, profit_figures
+from simmpp.report.page.figures.figure import Figure
+from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
-from simmpp.report.page.profit_figures import ProfitData
 
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from simmpp.plot.curves import Bars, Panel
 from simmpp.plot.matplotlib_panels import draw
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figures.figure import Figure
 
 
 def write_stills(figures: Iterable[Figure], folder: Path) -> Iterator[list[Path]]:

@@ -10,7 +10,7 @@ from simmpp.common.files import Row
 from simmpp.plot.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
-from simmpp.report.page.figure import Figure, slug, styles_of
+from simmpp.report.page.figures.figure import Figure, slug, styles_of
 from simmpp.sweeps.profits import MEASURES
 
 MOST_ABSCISSAS, LEAST_VALUES, MOST_PLATES = 2, 3, 16

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from simmpp.plot.curves import PERCENT, Bars, Scale
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange, plates
-from simmpp.report.page.figure import Figure, styles_of
+from simmpp.report.page.figures.figure import Figure, styles_of
 from simmpp.report.page.points import Points
 
 STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")

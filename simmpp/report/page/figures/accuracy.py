@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from simmpp.common.files import Row
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figures.figure import Figure
 from simmpp.studies.bench.errors import rungs
 from simmpp.studies.bench.figure import bench_panels
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from simmpp.common.files import Row
 from simmpp.policy.parameters import REFERENCE
-from simmpp.report.page.figure import Figure
+from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.points import Points
 from simmpp.studies.nebel98.figures import FIGURES, NAMES
