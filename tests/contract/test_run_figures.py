@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
+from simmpp.common.compiled import njit
 from simmpp.engine.arrays.records import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, SEND, SIZES
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
@@ -256,6 +257,12 @@ def test_marks_are_the_ends_of_the_bins_where_shares_are_reached() -> None:
     assert marks_of(finished, edges) == {95: 30, 99: 50, 100: 55}
 
 
+@njit
+def link_from(shape: tuple[int, int, int], here: int, destination: int) -> tuple[int, int]:
+    """What only compiled code may call, for the test."""
+    return link_towards(shape, here, destination)
+
+
 def test_routes_are_shortest_and_go_along_x_then_y_then_z() -> None:
     steps = [(1, 0), (-1, 0), (1, 1), (-1, 1), (1, 2), (-1, 2)]
     for shape in ((4, 3, 2), (5, 2, 2), (1, 1, 1), (2, 1, 1), (6, 1, 3)):
@@ -266,7 +273,7 @@ def test_routes_are_shortest_and_go_along_x_then_y_then_z() -> None:
             for destination in range(nb):
                 here, axes = source, []
                 while here != destination:
-                    link, following = link_towards(shape, here, destination)
+                    link, following = link_from(shape, here, destination)
                     pe, direction = divmod(link, ROWS_PER_PE)
                     assert pe == here
                     way, axis = steps[direction]
