@@ -23,7 +23,7 @@ from simmpp.common.strict import (
     declared,
     in_words,
     integer,
-    one_of,
+    only,
     parsed_by,
 )
 from simmpp.common.units import picoseconds, share, shown
@@ -95,6 +95,10 @@ _REFRESH_SCHEMA = {
     "required": ["refresh"],
     "additionalProperties": False,
 }
+_NAMES = only(
+    lambda name: isinstance(name, str) and name in POLICIES,  # as it is then: Python may add some
+    Expect(in_words(tuple(POLICIES)), {"enum": list(POLICIES)}),
+)
 RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
 
 
@@ -102,7 +106,7 @@ RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
 class PolicyParameters:
     """One policy of a run. A rule that a policy does not have ignores its parameters."""
 
-    name: Annotated[str, *one_of(*POLICIES)] = DEFAULT_POLICY
+    name: Annotated[str, *_NAMES] = DEFAULT_POLICY
     """The dataflow."""
     label: Text | None = None
     """Name in tables and rows; the policy's name when not given."""
