@@ -1,7 +1,8 @@
 """What a run gives back: integers that add up.
 
 A further column of ``results.csv`` is a name in ``COLUMNS`` and a field or property of ``Result``;
-what has to be counted for it is declared in ``arrays.records`` and counted where it happens.
+what has to be counted for it is declared in ``arrays.records`` and counted where it happens, in
+``pe.step.note_peaks`` if it is the most that a PE holds of something.
 """
 
 from __future__ import annotations

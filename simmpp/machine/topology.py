@@ -66,7 +66,10 @@ def hops(network: Network, source: int, destination: int) -> int:
 
 @kernel
 def next_link(network: Network, here: int, destination: int) -> tuple[int, int]:
-    """Row of the link that leads from a PE to another one's, and the PE behind that link."""
+    """Row of the link that leads from a node to a PE, and the node behind that link.
+
+    Nodes are PEs and, from ``pe_count`` on, switches, if there are any.
+    """
     return torus.link_towards((network[1], network[2], network[3]), here, destination)
 
 

@@ -81,7 +81,7 @@ MESSAGE = np.dtype(
         ("arrival_ps", "i8"),
         ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
         ("head_ps", "i8"),  # when its head is at the next link or port,
-        ("at", "i4"),  # and the PE where that is
+        ("at", "i4"),  # and the node where that is: a PE or a switch
         ("destination", "i4"),
         ("source", "i4"),
         ("chain", "i4"),
