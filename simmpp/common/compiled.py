@@ -64,11 +64,6 @@ def njit(function: Function) -> Function:
     return _cached(function, {"_nrt": True})
 
 
-def njit_reading(function: Function) -> Function:
-    """:func:`njit` for functions that make no arrays: their calls count no references."""
-    return _cached(function, {"_nrt": False})
-
-
 def _cached(function: Function, options: dict[str, bool]) -> Function:
     compiled: Any = _Compiled(function, targetoptions=OPTIONS | options)
     with _kept_for(function) as kept:

@@ -56,7 +56,6 @@ RayMessages = Literal["to-all", "with-rays", "after-runs"]
 without rays (``to-all``). Real machines need not: only messages that carry a ray (``with-rays``),
 for m rays to uniform destinations (nb - 1)(1 - (1 - 1/(nb - 1))^m); or these, and a PE sends only
 when all its rays lack an object, after a run of 1 / (1 - x) tests in the mean (``after-runs``)."""
-RAY_MESSAGES: tuple[RayMessages, ...] = ("to-all", "with-rays", "after-runs")
 
 ROUNDING = 1e-9
 """Times that differ by less are equal but for the rounding of sums."""

@@ -113,4 +113,6 @@ def read_record(path: Path) -> dict[str, Any]:
     content = json.loads(path.read_text(encoding="utf-8"))
     if not isinstance(content, dict):
         raise ValueError(f"{path.name}: expected a JSON object")
+    if "machine" in content:  # as `run --out` once wrote it
+        content["machines"] = [content.pop("machine")]
     return content

@@ -114,8 +114,7 @@ def load(path: str | os.PathLike[str]) -> Workload:
         row.validate(full=True)  # no array reaches beyond the file
         header = json.loads(row.schema.metadata[HEADER])
         shapes, checksum = header["shapes"], header.pop("checksum")
-        lists = {name: row[name].flatten().to_numpy(zero_copy_only=True) for name in ARRAYS}
-        arrays = {name: entries.reshape(shapes[name]) for name, entries in lists.items()}
+        arrays = {name: _entries(row[name]).reshape(shapes[name]) for name in ARRAYS}
         if checksum != _checksum(header, arrays):
             raise ValueError("damaged, its checksum does not fit")
         rows, columns = header["picture"]
@@ -130,6 +129,15 @@ def load(path: str | os.PathLike[str]) -> Workload:
 def _cell(array: NDArray[Any]) -> pa.Array:
     """All entries of an array as one list."""
     return pa.LargeListArray.from_arrays(pa.array([0, array.size], pa.int64()), array.ravel())
+
+
+def _entries(cell: pa.Array) -> NDArray[Any]:
+    """The same back, on the pages of the file; pyarrow's own ``to_numpy`` would import pandas."""
+    values = cell.flatten()
+    dtype = np.dtype(values.type.to_pandas_dtype())
+    buffer = values.buffers()[1]
+    at = values.offset * dtype.itemsize
+    return np.frombuffer(buffer, dtype, len(values), at) if len(values) else np.zeros(0, dtype)
 
 
 def _checksum(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> int:
