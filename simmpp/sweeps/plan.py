@@ -15,7 +15,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
-from simmpp.config.config import Config, Source
+from simmpp.config.config import READING, Config, Source
 from simmpp.methods.columns import KEYS, METHOD
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
@@ -66,11 +66,12 @@ class Plan:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What must be equal for results to be continued."""
+        """What must be equal for results to be continued; a reading counts by what it gives."""
+        settings = {key: said for key, said in recorded(self.config).items() if key != READING}
         keys = "".join(sorted({planned.task.key for planned in self.points}))
         return {
             "versions": result_versions(),
-            "config": recorded(self.config),
+            "config": settings,
             "workloads": self.workloads,
             "points": hashlib.sha256(keys.encode()).hexdigest(),
         }
