@@ -28,7 +28,6 @@ from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
 from simmpp.workload.sources import FILES
 
-
 READING = "reading"
 
 

@@ -29,9 +29,7 @@ def lines_used(data: Mapping[str, Any], machine: MachineSettings, reading: Readi
     return [line for line in reading.lines if line.key in used]
 
 
-def _filled(
-    data: Mapping[str, Any], reading: Reading
-) -> tuple[dict[str, Any], dict[str, None]]:
+def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], dict[str, None]]:
     """The data filled, and the keys of the lines that it took."""
     whole, used = dict(data), dict[str, None]()
     for part, values in reading.values.items():
@@ -41,12 +39,12 @@ def _filled(
             used |= dict.fromkeys(f"{part}.{key}" for key in new)
     policies: list[Any] = []
     for entry in long_policies(data.get(POLICY, {"name": DEFAULT_POLICY})):
-        name = entry.get("name", DEFAULT_POLICY) if isinstance(entry, dict) else None
-        new = {}
-        if isinstance(name, str) and name in reading.policies:
-            new = _missing(entry, reading.policies[name], POLICY)
+        if isinstance(entry, dict):
+            name = str(entry.get("name", DEFAULT_POLICY))
+            new = _missing(entry, reading.policies.get(name, {}), POLICY)
             used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in new)
-        policies.append({**entry, **new} if new else entry)
+            entry = {**entry, **new}
+        policies.append(entry)
     return {**whole, POLICY: policies}, used
 
 

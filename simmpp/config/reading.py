@@ -22,15 +22,16 @@ from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.common.sourced import Cited, values_of
 from simmpp.common.strict import Strict, in_words, structure
 from simmpp.common.units import shown
-from simmpp.common.yamlfile import parse_yaml, yaml_text
+from simmpp.common.yamlfile import Document, parse_yaml, yaml_text
 from simmpp.machine.constants import Constants
 from simmpp.machine.presets import Preset, preset_names
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import POLICIES, PolicyParameters
 
+Places = dict[KeyPath, Place]
 _FOLDER = files("simmpp") / "config" / "readings"
 _SUFFIXES = (".yaml", ".yml")
-MACHINE, POLICY = "machine", "policy"
+DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
 _NOT_IN_ONE: dict[str, tuple[str, ...]] = {
     MACHINE: ("shape", "contention"),  # choices, which no preset makes either
     POLICY: ("name", "label"),
@@ -101,8 +102,7 @@ def load_reading(name: str, folder: Path = Path()) -> Reading:
     Raises ConfigError if there is none, or for what is wrong in its file, with file and line.
     """
     if name in reading_names():
-        with as_file(_FOLDER / f"{name}.yaml") as path:
-            return _reading(name, yaml_text(path), str(path))
+        return _reading(name, *_of_package(name))
     path = folder / name
     if not name.endswith(_SUFFIXES) or not path.is_file():
         names = in_words(tuple(reading_names()))
@@ -110,26 +110,58 @@ def load_reading(name: str, folder: Path = Path()) -> Reading:
     return _reading(name, yaml_text(path), str(path))
 
 
+def _of_package(name: str) -> tuple[str, str]:
+    with as_file(_FOLDER / f"{name}.yaml") as path:
+        return yaml_text(path), str(path)
+
+
 @lru_cache(maxsize=32)  # every point of a sweep asks again
 def _reading(name: str, text: str, where: str) -> Reading:
-    document = parse_yaml(text, where)
-    places: dict[KeyPath, Place] = {path: (where, line) for path, line in document.lines.items()}
-    data = document.data
-    if not isinstance(data, dict) or not isinstance(data.get("description"), str):
-        raise ConfigError("expected a key description, and the values that it sets", where=where)
-    parts, cited = {key: part for key, part in data.items() if key != "description"}, Cited()
+    description, parts, places = _parts(parse_yaml(text, where))
+    cited = Cited()
     values = values_of(parts, cited, places)
     _refuse_choices(cited, places)
     keys = structure(_Keys, _with_names(values), places)
-    description = " ".join(data["description"].split())
+    costs = {preset: _costs(preset, keys, cited) for preset in values.get(MACHINE, {})}
     return Reading(
         name,
         description,
         {key: values[key] for key in ("placement", "memory") if key in values},
         values.get(POLICY, {}),
-        {preset: _costs(preset, description, keys, cited) for preset in values.get(MACHINE, {})},
+        costs,
         tuple(Line(key, text, cited.sources[key]) for key, text in cited.texts.items()),
     )
+
+
+def _parts(document: Document) -> tuple[str, dict[str, Any], Places]:
+    """The description; what a file sets, over what its base sets; and where each of it stands."""
+    data = document.data
+    description = data.get(DESCRIPTION) if isinstance(data, dict) else None
+    if not isinstance(data, dict) or not isinstance(description, str):
+        problem = f"expected a text {DESCRIPTION}, and what the reading sets"
+        raise ConfigError(problem, where=document.where)
+    places: Places = {path: (document.where, line) for path, line in document.lines.items()}
+    parts = {key: part for key, part in data.items() if key not in (DESCRIPTION, BASE)}
+    description = " ".join(description.split())
+    if BASE not in data:
+        return description, parts, places
+    if data[BASE] not in reading_names():
+        problem = f"value {shown(data[BASE])}: expected {in_words(tuple(reading_names()))}"
+        raise misplaced((BASE,), problem, places)
+    _, base, base_places = _parts(parse_yaml(*_of_package(data[BASE])))
+    whole = {
+        part: _over(base.get(part, {}), parts.get(part, {}), 2 if part in (MACHINE, POLICY) else 1)
+        for part in base | parts
+    }
+    return description, whole, base_places | places
+
+
+def _over(below: Any, above: Any, depth: int) -> Any:
+    """What is above, and what is below it of keys that are not above, down to a depth."""
+    if depth == 0 or not isinstance(below, dict) or not isinstance(above, dict):
+        return above
+    both = {key: _over(below[key], above[key], depth - 1) for key in below if key in above}
+    return below | above | both
 
 
 def _refuse_choices(cited: Cited, places: Mapping[KeyPath, Place]) -> None:
@@ -147,10 +179,10 @@ def _with_names(values: Mapping[str, Any]) -> dict[str, Any]:
     return {**values, POLICY: named}
 
 
-def _costs(preset: str, description: str, keys: _Keys, cited: Cited) -> Preset:
+def _costs(preset: str, keys: _Keys, cited: Cited) -> Preset:
     prefix = f"{MACHINE}.{preset}."
     texts, sources = (
         {key.removeprefix(prefix): said for key, said in by_key.items() if key.startswith(prefix)}
         for by_key in (cited.texts, cited.sources)
     )
-    return Preset(preset, description, getattr(keys.machine, preset), texts, sources)
+    return Preset(preset, "", getattr(keys.machine, preset), texts, sources)
