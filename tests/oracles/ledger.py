@@ -29,10 +29,10 @@ class Slice(NamedTuple):
     number: int = -1
     """The sender's send number; -1 if the message never departed."""
     payload_bytes: int = 0
-    ray_parts: int = 0
-    """How many batches of rays, objects and requests the message carries."""
-    object_parts: int = 0
-    request_parts: int = 0
+    objects: int = 0
+    """In the message."""
+    requests: int = 0
+    """In the message."""
 
 
 @dataclass
@@ -110,8 +110,8 @@ class Ledger:
         if m is not None:
             state |= {"kind": m.kind, "number": m.send_number, "payload_bytes": m.payload_bytes}
             state |= {"other": m.source if what == "receive" else m.destination}
-            state |= {"rays": m.n_rays, "ray_parts": m.count(RAYS)}
-            state |= {"object_parts": m.count(OBJECT), "request_parts": m.count(REQUEST)}
+            state |= {"rays": m.n_rays}
+            state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
 
     def clipped(self, end: int) -> list[Slice]:
