@@ -246,6 +246,15 @@ def cases() -> st.SearchStrategy[Case]:
     return st.integers(0, 2**32 - 1).map(random_case)
 
 
+def policies_of(case: Case) -> list[Case]:
+    """The same case under every policy, with everything that it may pack."""
+    return [
+        with_policy(case, name=name, packing=packing)
+        for name, policy in POLICIES.items()
+        for packing in policy.packings
+    ]
+
+
 def with_policy(case: Case, **changes: Any) -> Case:
     """The same case under another policy; it packs nothing where it can't pack as the case does."""
     if case.policy.packing not in POLICIES[changes.get("name", case.policy.name)].packings:
