@@ -156,6 +156,11 @@ class PolicyParameters:
         return packing
 
     @property
+    def packs(self) -> bool:
+        """Several things may share a message."""
+        return self.packing != "none"
+
+    @property
     def title(self) -> str:
         """The label, or the name where none was given."""
         return self.label or self.name
