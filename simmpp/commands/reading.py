@@ -10,7 +10,8 @@ from rich.table import Table
 from simmpp.commands import options
 from simmpp.commands.terminal import output, texts
 from simmpp.config.axes import keys_of
-from simmpp.config.config import READING, Config, point_at
+from simmpp.config.config import Config, point_at
+from simmpp.config.defaults import READING
 from simmpp.config.reading import Line, load_reading, reading_names
 
 

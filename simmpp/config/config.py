@@ -16,7 +16,7 @@ from simmpp.common.strict import is_line, structure
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
-from simmpp.config.defaults import filled, lines_used
+from simmpp.config.defaults import READING, filled, lines_used
 from simmpp.config.overrides import Places, override, set_key
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
@@ -27,8 +27,6 @@ from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
 from simmpp.workload.sources import FILES
-
-READING = "reading"
 
 
 @dataclass(frozen=True)
@@ -127,10 +125,12 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     return _checked(document.data, places, Path(path).parent, overrides)
 
 
-def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] = ()) -> Config:
+def config_from_mapping(
+    mapping: Mapping[str, object], overrides: Sequence[str] = (), folder: Path = Path()
+) -> Config:
     """Check a configuration given as Python data with the keys of the YAML file.
 
-    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them; files are looked for from ``folder``.
 
     Raises ConfigError, one line with key, value and what was expected.
     """
@@ -138,7 +138,7 @@ def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] 
         raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
     data = copy.deepcopy(dict(mapping))
     places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
-    return _checked(data, places, Path(), overrides)
+    return _checked(data, places, folder, overrides)
 
 
 def with_key(config: Config, key: str, value: object) -> Config:

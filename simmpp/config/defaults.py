@@ -10,6 +10,8 @@ from simmpp.config.reading import MACHINE, POLICY, Line, Reading
 from simmpp.config.settings import MachineSettings, long_policies
 from simmpp.policy.parameters import DEFAULT_POLICY
 
+READING = "reading"
+
 
 def filled(data: Mapping[str, Any], reading: Reading) -> dict[str, Any]:
     """A configuration's data, and below it what the reading sets; costs are not among it.
@@ -31,7 +33,7 @@ def lines_used(data: Mapping[str, Any], machine: MachineSettings, reading: Readi
 
 def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], dict[str, None]]:
     """The data filled, and the keys of the lines that it took."""
-    whole, used = dict(data), dict[str, None]()
+    whole, used = {READING: reading.name, **data}, dict[str, None]()
     for part, values in reading.values.items():
         if isinstance(given := data.get(part, {}), dict):
             new = _missing(given, values, part)

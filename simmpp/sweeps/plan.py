@@ -15,7 +15,8 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
-from simmpp.config.config import READING, Config, Source
+from simmpp.config.config import Config, Source
+from simmpp.config.defaults import READING
 from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
