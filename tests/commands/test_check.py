@@ -349,7 +349,7 @@ def test_other_settings_are_told_from_other_defaults(monkeypatch: pytest.MonkeyP
 def test_a_reading_of_ones_own_lies_beside_the_configuration() -> None:
     Path("sub").mkdir()
     Path("sub/own.yaml").write_text(
-        "description: one\nbased_on: mixed\nplacement: {pixels: {value: tiles, source: one's own}}\n"
+        "description: one\nbased_on: mixed\nplacement: {pixels: {value: tiles, source: own}}\n"
     )
     Path("sub/c.yaml").write_text(CONFIG + "reading: own.yaml\n")
     arguments = ("check", "sub/c.yaml", "--workers", "1", "--baseline", FILE)
