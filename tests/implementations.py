@@ -60,6 +60,7 @@ def outcome_of(result: Result) -> Outcome:
         rays=result.rays,
         tests=result.tests,
         rays_sent=result.rays_sent,
+        parts_by_kind=result.parts_by_kind,
         compute_ps=result.compute_ps.tolist(),
         communication_ps=result.communication_ps.tolist(),
         waiting_ps=result.waiting_ps.tolist(),

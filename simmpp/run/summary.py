@@ -62,12 +62,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ]
     return [
         *lines,
-        ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
-        ("messages", lambda run: f"{run.result.messages}"),
-        ("  requests", lambda run: f"{run.result.request_messages}"),
-        ("  objects", lambda run: f"{run.result.object_messages}"),
-        ("  rays", lambda run: f"{run.result.ray_messages}"),
-        ("  loads", lambda run: f"{run.result.load_messages}"),
+        *_message_lines(runs),
         ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
         ("rays sent", lambda run: f"{run.result.rays_sent}"),
         ("utilisation, least", lambda run: f"{utilisation(run).min():.1%}"),
@@ -76,6 +71,32 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("imbalance", lambda run: f"{imbalance(run):.3f}"),
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
         ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
+        ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+    ]
+
+
+def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
+    """Messages by kind and, where a policy packs, what they carry: requests, objects, batches."""
+    base = reference_of(runs).result
+    of_parts: list[tuple[str, Cell]] = [
+        ("  by what they carry", lambda run: _times(ratio(base.parts, run.result.parts)))
+    ]
+    parts: list[tuple[str, Cell]] = [
+        ("parts of messages", lambda run: f"{run.result.parts}"),
+        ("  requests", lambda run: f"{run.result.request_parts}"),
+        ("  objects", lambda run: f"{run.result.object_parts}"),
+        ("  batches of rays", lambda run: f"{run.result.ray_parts}"),
+    ]
+    packs = any(run.parameters.packs for run in runs)
+    return [
+        ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
+        *(of_parts if packs else []),
+        ("messages", lambda run: f"{run.result.messages}"),
+        ("  requests", lambda run: f"{run.result.request_messages}"),
+        ("  objects", lambda run: f"{run.result.object_messages}"),
+        ("  rays", lambda run: f"{run.result.ray_messages}"),
+        ("  loads", lambda run: f"{run.result.load_messages}"),
+        *(parts if packs else []),
     ]
 
 

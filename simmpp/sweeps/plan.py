@@ -16,7 +16,7 @@ from simmpp.common.files import Row
 from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
 from simmpp.config.config import Config, Source
-from simmpp.methods.columns import KEYS, METHOD
+from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import record, recorded
@@ -53,6 +53,12 @@ class Plan:
         """Columns of ``profits.csv`` beyond those that all have."""
         swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
+
+    @property
+    def result_columns(self) -> tuple[str, ...]:
+        """Columns of ``results.csv``."""
+        packs = any(planned.point.policy.packs for planned in self.points)
+        return result_columns(self.further, packs=packs)
 
     @property
     def tasks(self) -> list[Task]:

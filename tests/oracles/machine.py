@@ -15,7 +15,7 @@ from typing import Any
 from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
-from oracles.state import PE, Message
+from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
@@ -76,23 +76,25 @@ class Simulation(Dispatch):
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
         cost = self.machine.receive_startup_ps
-        cost += copy_ps(self.machine.unpack[message.kind], message.payload_bytes)
+        unpack = self.machine.unpack
+        cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)
         self.ledger.received += 1
         pe.known_load[message.source] = Fraction(message.load)
         pe.heard[message.source] = clock
-        if message.kind in (OBJECT, RAYS):
+        if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
-        if message.kind == OBJECT:
-            self.release(pe, message.obj)
-        elif message.kind == RAYS:
-            pe.make_ready(list(message.rays), self.ready_order)
-        elif message.kind == LOAD:
-            pe.refresh_allowed = False
+        pe.refresh_allowed = not message.count(LOAD)
+        for part in message.parts:
+            if part.kind == RAYS:
+                pe.make_ready(list(part.rays), self.ready_order)
+            elif part.kind == OBJECT:
+                self.release(pe, part.obj)
         self.ledger.did(pe, time, "receive", clock, message)
-        if message.kind == REQUEST:
-            size = self.object_bytes[message.obj]
-            clock = self.send(clock, pe, OBJECT, message.source, size, obj=message.obj)
+        wanted = [part.obj for part in message.parts if part.kind == REQUEST]
+        if wanted:
+            answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
+            clock = self.send(clock, pe, message.source, answer)
         self.sample_rays(pe)
         return clock
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from simmpp.common.files import Row, write_csv, write_text
 from simmpp.config.config import Config, load_config
-from simmpp.methods.columns import result_columns
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
 from simmpp.run.provenance import all_versions, result_versions
@@ -71,7 +70,8 @@ def reproduce(
         rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
         model = load_experiment(MODEL, overrides)
         verdicts = reproduce_figure2(model, workload_of(model), out)
-    return _report(rows, verdicts, overrides, out)
+        columns = {name: plan.result_columns for name, plan in plans.items()}
+    return _report(rows, columns, verdicts, overrides, out)
 
 
 def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
@@ -87,13 +87,17 @@ def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
 
 
 def _report(
-    rows: Mapping[str, list[Row]], verdicts: list[Verdict], overrides: Sequence[str], out: Path
+    rows: Mapping[str, list[Row]],
+    columns: Mapping[str, Sequence[str]],
+    verdicts: list[Verdict],
+    overrides: Sequence[str],
+    out: Path,
 ) -> Reproduction:
     """Write configurations, rows, figures, claims and the record; ``verdicts`` are the model's."""
     for name in (MODEL, *rows):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
     for name, table in rows.items():
-        write_csv(table, result_columns(), out / f"{name}.csv")
+        write_csv(table, columns[name], out / f"{name}.csv")
     measured = {name: RowIndex(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
         draw(panels(measured[name]), out / figure)
