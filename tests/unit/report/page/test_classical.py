@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_rows import failed, row
+from sweep_rows import failed, row, written
 
 from simmpp.common.files import Row
 from simmpp.report.page.classical import duels_of
 from simmpp.report.page.findings import sentences
+from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
+from simmpp.report.page.report import report_of
 
 
 def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
@@ -151,3 +155,21 @@ def test_nothing_is_told_without_a_result_or_another_dataflow() -> None:
     assert told(points_of([*classical, failed("concurrent")], ())) == []
     apart = [*timed("object", 100), failed("object", 1), failed("concurrent"), row("concurrent", 1)]
     assert told(points_of(apart, ())) == []
+
+
+POLICIES: list[dict[str, Any]] = [
+    {"policy": [{"name": "object", "label": "keen"}, {"name": "concurrent", "label": "eager"}]},
+    {"sweep": {"policy": [{"name": "object", "label": "keen"}, ["ray", {"label": "eager"}]]}},
+    {"sweep": {"points": [{"name": "a", "policy": {"name": "object", "label": "keen"}}]}},
+]
+
+
+@pytest.mark.parametrize("config", POLICIES)
+def test_a_labelled_policy_is_what_the_record_says(tmp_path: Path, config: dict[str, Any]) -> None:
+    rows = timed("object", 300) + timed("ray", 200) + timed("keen", 100) + timed("eager", 150)
+    written(tmp_path, rows)
+    (tmp_path / "run.json").write_text(json.dumps({"config": config}))
+    assert told(report_of(read_folder(tmp_path)).points) == [
+        "With no more memory than eager the best classical way is keen: eager takes 1.5 times as "
+        "long."
+    ]
