@@ -3,8 +3,8 @@
     python experiments/nebel98/compare.py [CLAIMS]
 
 Reads expected.yaml and CLAIMS, the claims.csv of `simmpp reproduce --reading ...` (by default the
-one here), and writes expected.csv: reading, claim, expected, found, hit or miss. Prints the same as a
-table for README.md, and which reading the rule in expected.yaml makes the default.
+one here), and writes expected.csv: reading, claim, expected, found, hit or miss. Prints the same as
+a table for README.md, and which reading the rule in expected.yaml makes the default.
 """
 
 from __future__ import annotations
