@@ -143,6 +143,7 @@ def test_a_baseline_of_ones_own() -> None:
 
 
 def test_update_says_what_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("c.yaml").write_text(CONFIG + "reading: plain\n")  # another has startups of its own
     with monkeypatch.context() as patch:
         slow_sends(patch)
         check("--update")

@@ -19,6 +19,7 @@ from simmpp.methods.columns import COLUMNS
 
 CONFIG = """
 scene: tetra:2
+reading: plain
 picture: {resolution: 12}
 processors: 4
 memory: {fraction: 0.3}

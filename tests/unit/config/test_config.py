@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import config_from_mapping, load_config
-from simmpp.config.settings import Settings
+from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.placement.placement import Cells, Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.picture import Picture
@@ -26,7 +26,8 @@ def load(text: str, *overrides: str):  # type: ignore[no-untyped-def]
 
 
 def test_everything_but_the_scene_has_a_default() -> None:
-    config = load("scene: {spd: mountain, size: 5}\n")
+    assert load("scene: {spd: mountain, size: 5}\n").settings.reading == DEFAULT_READING
+    config = load("scene: {spd: mountain, size: 5}\nreading: plain\n")
     assert config.scene_spec == {"spd": "mountain", "size": 5}
     assert config.picture == Picture()
     assert config.memory == Memory()
@@ -41,6 +42,7 @@ def test_everything_but_the_scene_has_a_default() -> None:
 def test_everything_can_be_said() -> None:
     config = load("""
 scene: {mesh: bunny.glb, objects: {clusters: 64}}
+reading: plain
 picture: {resolution: 9, samples: corners, max_depth: 3, shadows: false, refraction: false}
 machine: {preset: t3d, shape: [8, 1, 1], test: 1 us, pack: {rays: {bandwidth: unlimited}}}
 processors: 8
