@@ -39,9 +39,9 @@ def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> S
     """The scene of a mesh file, cut into objects.
 
     ``objects`` is ``nodes``, ``components`` or ``{clusters: k}`` (at most k triangles each); a cut
-    never joins two nodes. Nodes are ordered by name, those of glTF as in the file, components by their first triangle, clusters
-    by bisection. The camera shows everything. Raises SceneError for a file that can't be read, or
-    that holds no triangle, or a vertex that is not finite.
+    never joins two nodes. Nodes of glTF are ordered as in the file, others by name, components by
+    their first triangle, clusters by bisection. The camera shows everything. Raises SceneError for
+    a file that can't be read, or that holds no triangle, or a vertex that is not finite.
     """
     file = Path(fspath(path))
     label, cut = cut_named(objects)
