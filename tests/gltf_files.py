@@ -9,6 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
+
+from simmpp.common.errors import SceneError
+from simmpp.scene.gltf.read import nodes
 
 CODES = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -95,3 +99,12 @@ def one_square(**node: Any) -> File:
     file = File()
     file.node(mesh=file.mesh(file.square()), **node)
     return file
+
+
+def refused(data: bytes, file: str = "a.gltf") -> str:
+    """The one line that refuses a file."""
+    with pytest.raises(SceneError) as caught:
+        nodes(data, Path(file))
+    message = str(caught.value)
+    assert message.startswith(f"{file}: ") and message.isprintable() and len(message) < 300
+    return message

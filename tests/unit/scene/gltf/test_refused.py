@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -10,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import SQUARE, File, glb, one_square
+from gltf_files import SQUARE, File, one_square, refused
 
-from simmpp.common.errors import SceneError
 from simmpp.scene.gltf import accessors, read
 from simmpp.scene.gltf.read import nodes
 
@@ -217,14 +215,6 @@ REFUSED: dict[str, tuple[Change, str]] = {
 }
 
 
-def refused(data: bytes, file: str = "a.gltf") -> str:
-    with pytest.raises(SceneError) as caught:
-        nodes(data, Path(file))
-    message = str(caught.value)
-    assert message.startswith(f"{file}: ") and message.isprintable() and len(message) < 300
-    return message
-
-
 @pytest.mark.parametrize("name", REFUSED)
 def test_refused(name: str) -> None:
     change, problem = REFUSED[name]
@@ -237,62 +227,12 @@ def test_refused(name: str) -> None:
 TAIL = "".join(f"%{byte:02x}" for byte in np.array([0, 1, 2, 0, 2, 3], "<u2").tobytes())
 
 
-# --- containers ---
-
-WHOLE = one_square().glb()
-
-
-def header(version: int = 2, length: int = len(WHOLE)) -> bytes:
-    return b"glTF" + struct.pack("<II", version, length)
-
-
-@pytest.mark.parametrize(
-    ("data", "problem"),
-    [
-        (b"", "expected 'glTF' and two numbers at its beginning"),
-        (b"{}", "expected 'glTF' and two numbers at its beginning"),
-        (WHOLE[:11], "expected 'glTF' and two numbers"),
-        (header(version=1) + WHOLE[12:], "version 1 of the format: expected 2"),
-        (WHOLE[:-1], f"its header says {len(WHOLE)} bytes, the file has {len(WHOLE) - 1}"),
-        (header(length=12), "its first chunk is not its JSON"),
-        (WHOLE[:16] + b"BIN\0" + WHOLE[20:], "its first chunk is not its JSON"),
-        (header() + b"\xff\xff\xff\xff" + WHOLE[16:], "the chunk at byte 12 goes beyond the end"),
-        (header(length=15) + b"\0\0\0", "the chunk at byte 12 goes beyond the end"),
-    ],
-)
-def test_containers(data: bytes, problem: str) -> None:
-    assert f"not a readable glb mesh: {problem}" in refused(data, "a.glb")
-
-
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        (b"", "EOF while parsing a value at line 1 column 0"),
-        (b'{"asset":\n {"version" "2.0"}}', "expected `:` at line 2 column 12"),
-        (b'{"nodes": [{"name": "n\xfc"}]}', "invalid unicode code point at line 1 column 23"),
-        (b'{"nodes": [{"name": "\\ud800"}]}', "unexpected end of hex escape at line 1"),
-        (b"[" * 10_000, "recursion limit exceeded at line 1"),
-        (b'{"scene": ' + b"9" * 10_000 + b"}", "number out of range at line 1"),
-    ],
-)
-def test_text_that_is_not_json(text: bytes, problem: str) -> None:
-    for data, file in ((text, "a.gltf"), (glb(text.ljust(4)), "a.glb")):
-        assert f"its JSON: {problem}"[:40] in refused(data, file)
-
-
-def test_json_of_another_kind() -> None:
-    assert "its JSON: value: expected a valid object" in refused(b"[]")
-
-
 def test_an_index_that_stands_for_no_vertex() -> None:
     file = File()
     attributes = {"POSITION": file.accessor(SQUARE * 64)}
     indices = file.accessor([0, 1, 255], "u1")
     file.node(mesh=file.mesh({"attributes": attributes, "indices": indices}))
     assert "accessors[1]: the index 255 stands for no vertex" in refused(file.gltf())
-
-
-# --- sizes ---
 
 
 def test_a_hostile_file_takes_no_memory() -> None:
