@@ -43,7 +43,7 @@ class Arrays:
     def indices(self, index: int) -> Indices:
         """An accessor of unsigned integers, (count,) int64."""
         accessor = self._accessor(index, ("SCALAR",))
-        if accessor.component_type not in UNSIGNED or accessor.normalized:
+        if accessor.component_type not in UNSIGNED:
             raise SceneError(f"accessors[{index}]: its indices are not unsigned integers")
         stored = self._values(accessor, f"accessors[{index}]").ravel()
         reserved = np.iinfo(stored.dtype).max

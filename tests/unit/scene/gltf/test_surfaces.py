@@ -59,6 +59,7 @@ def test_materials(found: Material, expected: Material) -> None:
         ({"diffuseFactor": [0, 0, 0, 1], "specularFactor": [1, 0.8, 0.2]}, True),
         ({"diffuseFactor": [0.1, 0, 0, 1], "specularFactor": [0.5] * 3}, True),
         ({"specularFactor": [1, 1, 1], "glossinessFactor": 0.5}, False),
+        ({"diffuseFactor": [0.3, 0.1, 0.2, 1], "specularFactor": [0.3, 0.2, 0.1]}, False),
         ({}, True),
     ],
 )
