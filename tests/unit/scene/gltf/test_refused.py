@@ -265,16 +265,17 @@ def test_a_hostile_file_takes_no_memory() -> None:
         tracemalloc.stop()
 
 
-def test_more_triangles_than_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(read, "MOST_TRIANGLES", 19)
+@pytest.mark.parametrize(("limit", "each"), [("MOST_TRIANGLES", 2), ("MOST_OBJECTS", 1)])
+def test_more_than_memory_holds(monkeypatch: pytest.MonkeyPatch, limit: str, each: int) -> None:
+    monkeypatch.setattr(read, limit, 9 * each)
     file = one_square()
     for _ in range(8):
         file.node(mesh=0)
     assert len(nodes(file.gltf(), Path("a.gltf"))) == 9
     file.node(mesh=0)
-    assert "its nodes place more than 19 triangles" in refused(file.gltf())
-    monkeypatch.setattr(read, "MOST_TRIANGLES", 5)
-    assert "its nodes place more than 5 triangles" in refused(instanced_squares().gltf())
+    assert "its nodes place more than" in refused(file.gltf())
+    monkeypatch.setattr(read, limit, 3 * each - 1)
+    assert "its nodes place more than" in refused(instanced_squares().gltf())
 
 
 def test_zeros_that_no_bytes_stand_for(monkeypatch: pytest.MonkeyPatch) -> None:
