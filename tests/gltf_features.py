@@ -117,7 +117,7 @@ def instanced() -> File:
         "SCALE": file.accessor([(1, 1, 1), (1, 1, 1), (2, 2, 2)]),
     }
     file.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
-    file.json["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
+    file.require("EXT_mesh_gpu_instancing")
     return file
 
 
@@ -162,6 +162,7 @@ def hidden() -> File:
     file = one_square()
     child = file.node(root=False, mesh=0, translation=[0, 0, 9])
     extension = {"KHR_node_visibility": {"visible": False}}
+    file.json["extensionsUsed"] = ["KHR_node_visibility"]
     file.node(children=[child], extensions=extension)
     return file
 
@@ -193,12 +194,14 @@ def painted() -> File:
 
 def of_textures() -> File:
     file = one_square()
-    names = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual"]
-    file.json |= {
-        "extensionsRequired": names,
-        "images": "not looked at",
-        "asset": {"version": "2.1"},
-    }
+    file.require("KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual")
+    return file
+
+
+def of_a_later_version() -> File:
+    """What a reader of 2.0 doesn't know is not looked at: nothing says that it must be."""
+    file = one_square()
+    file.json |= {"asset": {"version": "2.1"}, "holograms": [{"mesh": 0}]}
     return file
 
 
@@ -286,5 +289,6 @@ FEATURES: dict[str, tuple[Callable[[], File], Floats]] = {
     "hidden": (hidden, moved(UNIT)),
     "draco with plain data": (draco_with_plain_data, moved(UNIT)),
     "painted": (painted, moved(UNIT)),
+    "a later version": (of_a_later_version, moved(UNIT)),
     "extensions of textures": (of_textures, moved(UNIT)),
 }

@@ -62,6 +62,9 @@ class File:
             self.json["scenes"][0].setdefault("nodes", []).append(index)
         return index
 
+    def require(self, *extensions: str) -> None:
+        self.json |= {"extensionsUsed": extensions, "extensionsRequired": extensions}
+
     def gltf(self, uri: str | None = None) -> bytes:
         """JSON, with the buffer in it unless there is a ``uri``."""
         inline = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
