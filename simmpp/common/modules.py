@@ -8,5 +8,7 @@ PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
 ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
+PANELS = "simmpp.plot.matplotlib_panels"
+PICTURES = "simmpp.report.run_figures.drawing"
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD)
+NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD, PANELS, PICTURES)

@@ -112,23 +112,40 @@ class LocalProcesses(Pool):
         self.executor.shutdown(wait=True, cancel_futures=True)
 
 
-def start_server() -> None:
+@contextmanager
+def processes(workers: int, preload: str) -> Iterator[Executor]:
+    """Processes that have loaded a module, for work that is no task; one works right here.
+
+    In the end, also when interrupted, what they are at is finished and the rest is dropped.
+    """
+    if workers == 1:
+        yield SerialExecutor()
+        return
+    executor, leash = _leashed(workers, preload)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+        leash.close()
+
+
+def start_server(preload: str = PRELOAD) -> None:
     """Begin to load what workers need while this process imports the same for a second.
 
     The workers are forks of this server, so they need not load it again.
     """
     if START_METHOD == "forkserver":
         context: Any = multiprocessing.get_context(START_METHOD)
-        context.set_forkserver_preload([PRELOAD])
+        context.set_forkserver_preload([preload])
         with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
             forkserver.ensure_running()
 
 
-def _leashed(workers: int) -> tuple[Executor, Connection]:
+def _leashed(workers: int, preload: str = PRELOAD) -> tuple[Executor, Connection]:
     """An executor whose processes are there, and what holds them."""
     from simmpp.common.compiled import cache_folder
 
-    start_server()
+    start_server(preload)
     context: Any = multiprocessing.get_context(START_METHOD)
     held, leash = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
