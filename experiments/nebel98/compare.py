@@ -1,10 +1,11 @@
 """What was expected of each claim beside what came out.
 
-    python experiments/nebel98/compare.py [CLAIMS ...]
+    python experiments/nebel98/compare.py [CLAIMS]
 
-Reads expected.yaml and CLAIMS, the claims.csv of `simmpp reproduce --reading ...` (by default the
-one here, and equal_memory.csv), and writes expected.csv: reading, claim, expected, found, hit or
-miss. Prints the same as a table for README.md, and the default by the rule in expected.yaml.
+Reads expected.yaml, CLAIMS, the claims.csv of `simmpp reproduce --reading ...` (by default the one
+here), and equal_memory.csv, and writes expected.csv: reading, claim, expected, found, hit or miss.
+Prints the same as a table for README.md, and which reading the rule in expected.yaml makes the
+default.
 """
 
 from __future__ import annotations
@@ -73,9 +74,9 @@ def _cell(row: Row) -> str:
 
 def main(arguments: Sequence[str]) -> None:
     """Compare, write, print."""
-    paths = [*map(Path, arguments)] or [HERE / "claims.csv", HERE / "equal_memory.csv"]
+    paths = (Path(arguments[0]) if arguments else HERE / "claims.csv", HERE / "equal_memory.csv")
     expected: Any = read_yaml(HERE / "expected.yaml").data
-    claims = [row for path in paths if path.is_file() for row in read_csv(path, (READING, *CLAIM_COLUMNS))]
+    claims = [row for path in paths for row in read_csv(path, (READING, *CLAIM_COLUMNS))]
     rows = compared(expected, claims)
     write_csv(rows, COLUMNS, HERE / "expected.csv")
     print(markdown(rows))

@@ -1,16 +1,16 @@
-"""The claims where objects kept count as memory: x/2 resident and x/2 kept, the reading mixed.
+"""The reading mixed at equal object memory: of each x half is resident, and half is kept.
 
-    python experiments/nebel98/equal_memory.py [FOLDER [KEY=VALUE ...]]
+    python experiments/nebel98/equal_memory.py [FOLDER [SEEDS]]
 
-Simulates figures 3, 4 and 6 at half of each fraction, where as many are kept as are resident, and
-judges the claims by both together: equal_memory.csv. Finished simulations are kept in FOLDER
-(out/equal-memory); KEY=VALUE are as --set takes them.
+The other readings keep as many objects as are resident, so they need up to twice the memory that x
+says. Simulates figures 3, 4 and 6 (finished simulations are kept in FOLDER, out/equal_memory; 2
+seeds by default), judges the claims with x as what is held in all, and writes equal_memory.csv:
+claims.csv of this reading. F2a and F2b, of the model, know nothing of what is kept.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import asdict
 from fractions import Fraction
@@ -18,6 +18,8 @@ from pathlib import Path
 
 from simmpp.common.files import Row, write_csv
 from simmpp.common.units import share
+from simmpp.config.axes import keys_of
+from simmpp.config.config import Config, with_key
 from simmpp.config.defaults import READING
 from simmpp.run.provenance import result_versions
 from simmpp.studies.nebel98.claims import judge
@@ -25,40 +27,47 @@ from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.reproduce import load_experiment
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS
 from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.plan import Plan, plan_of
+from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import run_plans
 
 HERE = Path(__file__).parent
 NAME = "mixed-equal-memory"
-FIGURES = ("figure3", "figure4", "figure6")
-FRACTION = "sweep.memory.fraction"
+FRACTION = "memory.fraction"
 
 
-def halved(figure: str, overrides: Sequence[str] = ()) -> Plan:
-    """The plan of a figure at half of its fractions."""
-    fractions = load_experiment(figure).settings.sweep[FRACTION.removeprefix("sweep.")]
-    halves = ", ".join(str(Fraction(share(x)) / 2) for x in fractions)
-    return plan_of(load_experiment(figure, [*overrides, "reading=mixed", f"{FRACTION}=[{halves}]"]))
+def halved(config: Config) -> Config:
+    """The same experiment with half of each fraction resident; the reading keeps as many."""
+    (axis,) = (axis for axis in config.axes.values() if FRACTION in keys_of(axis))
+    fractions = [Fraction(share(choice.assignments[FRACTION])) / 2 for choice in axis]
+    return with_key(config, f"sweep.{FRACTION}", [str(fraction) for fraction in fractions])
 
 
-def by_both(rows: Sequence[Row]) -> RowIndex:
-    """Rows by the share that is resident and kept together."""
-    return RowIndex({**row, "fraction": 2 * row["fraction"]} for row in rows)
+def held_in_all(row: Row) -> Row:
+    """The row with what is resident and kept together as its fraction."""
+    return {**row, "fraction": round(2 * float(row["fraction"]), 12)}
 
 
-def main(folder: Path, overrides: Sequence[str] = ()) -> None:
+def main(folder: Path, seeds: int) -> None:
     """Simulate, judge, write."""
-    plans = {figure: halved(figure, overrides) for figure in FIGURES}
+    overrides = (f"{READING}=mixed", f"seeds={list(range(seeds))}")
+    plans = [
+        plan_of(halved(load_experiment(name, overrides)))
+        for name in ("figure3", "figure4", "figure6")
+    ]
     folder.mkdir(parents=True, exist_ok=True)
     with closing(Journal(folder, {"versions": result_versions()})) as journal:
-        run_plans(plans.values(), journal, workers=2)
-        measured = [by_both(plan.rows(journal.outcomes)) for plan in plans.values()]
-    claims = [{READING: NAME, **asdict(verdict)} for verdict in judge(Evidence(*measured))]
-    write_csv(claims, (READING, *CLAIM_COLUMNS), HERE / "equal_memory.csv")
-    for claim in claims:
-        print(claim["claim"], claim["holds"], claim["simulated"], sep="  ")
+        run_plans(plans, journal, workers=2)
+        tables = [[held_in_all(row) for row in plan.rows(journal.outcomes)] for plan in plans]
+    verdicts = judge(Evidence(*(RowIndex(table) for table in tables)))
+    rows = [{READING: NAME, **asdict(verdict)} for verdict in verdicts]
+    write_csv(rows, (READING, *CLAIM_COLUMNS), HERE / "equal_memory.csv")
+    for verdict in verdicts:
+        print(f"{verdict.claim}: {verdict.holds}: {verdict.simulated}")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/equal-memory"), sys.argv[2:])
+    main(
+        Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/equal_memory"),
+        int(sys.argv[2]) if len(sys.argv) > 2 else 2,
+    )

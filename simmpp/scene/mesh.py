@@ -11,16 +11,18 @@ import math
 from collections.abc import Iterator
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from simmpp.common.errors import SceneError
 from simmpp.common.files import refuse_special
 from simmpp.scene.boxes import scene_box
-from simmpp.scene.cut import Cut, Indices, compacted, cut_named, welded
+from simmpp.scene.cut import Cut, compacted, cut_named, welded
 from simmpp.scene.framing import framing
+from simmpp.scene.gltf.read import nodes
 from simmpp.scene.nff_words import LARGEST
+from simmpp.scene.node import Node, placed
 from simmpp.scene.scene import SKY_BLUE, Floats, Material, MeshPart, Scene, Vector
 
 Y_UP: Vector = (0.0, 1.0, 0.0)
@@ -32,29 +34,23 @@ MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
 
 
-class _Node(NamedTuple):
-    """A mesh in its place in the scene."""
-
-    name: str
-    vertices: Floats
-    faces: Indices
-    material: Material
-
-
 @np.errstate(over="ignore", invalid="ignore")  # what is not finite is refused here, in words
 def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> Scene:
     """The scene of a mesh file, cut into objects.
 
     ``objects`` is ``nodes``, ``components`` or ``{clusters: k}`` (at most k triangles each); a cut
-    never joins two nodes. Nodes are ordered by name, components by their first triangle, clusters
-    by bisection. The camera shows everything. Raises SceneError for a file that can't be read, or
-    that holds no triangle, or a vertex that is not finite.
+    never joins two nodes. Nodes of glTF are ordered as in the file, others by name, components by
+    their first triangle, clusters by bisection. The camera shows everything. Raises SceneError for
+    a file that can't be read, or that holds no triangle, or a vertex that is not finite.
     """
     file = Path(fspath(path))
     label, cut = cut_named(objects)
     materials: dict[Material, int] = {}
     parts: list[MeshPart] = []
     for node in _nodes(file):
+        if not np.all(np.abs(node.vertices[node.faces]) <= LARGEST):
+            problem = f"a vertex of {node.name!r} is not a finite number of at most {LARGEST:g}"
+            raise SceneError(problem, where=str(file))
         material = materials.setdefault(node.material, len(materials))
         parts.extend(_parts(node, cut, material))
     if not parts:
@@ -68,7 +64,7 @@ def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> S
     return Scene(name, tuple(parts), tuple(materials), lights, camera, SKY_BLUE)
 
 
-def _parts(node: _Node, cut: Cut, material: int) -> Iterator[MeshPart]:
+def _parts(node: Node, cut: Cut, material: int) -> Iterator[MeshPart]:
     vertices, faces = welded(node.vertices, node.faces)
     pieces = compacted(vertices, faces, cut(vertices, faces))
     for i, piece in enumerate(pieces):
@@ -76,8 +72,11 @@ def _parts(node: _Node, cut: Cut, material: int) -> Iterator[MeshPart]:
         yield MeshPart(*piece, material, name)
 
 
-def _nodes(file: Path) -> Iterator[_Node]:
+def _nodes(file: Path) -> Iterator[Node]:
     """The meshes of a file, by the name of their node."""
+    if file.suffix.lower() in (".gltf", ".glb"):
+        yield from nodes(_bytes(file), file)
+        return
     scene = _read(file)
     for name in sorted(scene.graph.nodes_geometry):
         matrix, geometry = scene.graph[name]
@@ -89,13 +88,17 @@ def _nodes(file: Path) -> Iterator[_Node]:
         if faces.min() < 0 or faces.max() >= len(vertices):
             problem = f"a face of {name!r} names a vertex that is not there"
             raise SceneError(problem, where=str(file))
-        vertices = _placed(vertices, np.asarray(matrix, dtype=np.float64))
-        if not np.all(np.abs(vertices[faces]) <= LARGEST):
-            problem = f"a vertex of {name!r} is not a finite number of at most {LARGEST:g}"
-            raise SceneError(problem, where=str(file))
-        if np.linalg.det(matrix[:3, :3]) < 0:  # a mirrored copy would be inside out
-            faces = faces[:, ::-1]
-        yield _Node(str(name), vertices, faces, _material(mesh))
+        vertices, faces = placed(vertices, faces, np.asarray(matrix, dtype=np.float64))
+        yield Node(str(name), vertices, faces, _material(mesh))
+
+
+def _bytes(file: Path) -> bytes:
+    try:
+        refuse_special(file)
+        return file.read_bytes()
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise SceneError(f"can't read the file: {reason}", where=str(file)) from None
 
 
 def _read(file: Path) -> Any:
@@ -126,13 +129,6 @@ def _read(file: Path) -> Any:
     except Exception as error:  # its readers raise whatever their parsers do
         reason = (str(error).strip().splitlines() or [""])[0][:200] or type(error).__name__
         raise SceneError(f"not a readable {kind} mesh: {reason}", where=str(file)) from None
-
-
-def _placed(vertices: Floats, matrix: Floats) -> Floats:
-    """Vertices under an affine matrix; sums in a fixed order, which BLAS does not promise."""
-    x, y, z = vertices.T
-    rows = [m[0] * x + m[1] * y + m[2] * z + m[3] for m in matrix[:3]]
-    return np.stack(rows, axis=1)
 
 
 def _material(mesh: Any) -> Material:
