@@ -11,16 +11,17 @@ import math
 from collections.abc import Iterator
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from simmpp.common.errors import SceneError
 from simmpp.common.files import refuse_special
 from simmpp.scene.boxes import scene_box
-from simmpp.scene.cut import Cut, Indices, compacted, cut_named, welded
+from simmpp.scene.cut import Cut, compacted, cut_named, welded
 from simmpp.scene.framing import framing
 from simmpp.scene.nff_words import LARGEST
+from simmpp.scene.node import Node
 from simmpp.scene.scene import SKY_BLUE, Floats, Material, MeshPart, Scene, Vector
 
 Y_UP: Vector = (0.0, 1.0, 0.0)
@@ -30,15 +31,6 @@ Z_UP_FORMATS = (".stl",)
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
 MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
-
-
-class _Node(NamedTuple):
-    """A mesh in its place in the scene."""
-
-    name: str
-    vertices: Floats
-    faces: Indices
-    material: Material
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what is not finite is refused here, in words
@@ -68,7 +60,7 @@ def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> S
     return Scene(name, tuple(parts), tuple(materials), lights, camera, SKY_BLUE)
 
 
-def _parts(node: _Node, cut: Cut, material: int) -> Iterator[MeshPart]:
+def _parts(node: Node, cut: Cut, material: int) -> Iterator[MeshPart]:
     vertices, faces = welded(node.vertices, node.faces)
     pieces = compacted(vertices, faces, cut(vertices, faces))
     for i, piece in enumerate(pieces):
@@ -76,7 +68,7 @@ def _parts(node: _Node, cut: Cut, material: int) -> Iterator[MeshPart]:
         yield MeshPart(*piece, material, name)
 
 
-def _nodes(file: Path) -> Iterator[_Node]:
+def _nodes(file: Path) -> Iterator[Node]:
     """The meshes of a file, by the name of their node."""
     scene = _read(file)
     for name in sorted(scene.graph.nodes_geometry):
@@ -95,7 +87,7 @@ def _nodes(file: Path) -> Iterator[_Node]:
             raise SceneError(problem, where=str(file))
         if np.linalg.det(matrix[:3, :3]) < 0:  # a mirrored copy would be inside out
             faces = faces[:, ::-1]
-        yield _Node(str(name), vertices, faces, _material(mesh))
+        yield Node(str(name), vertices, faces, _material(mesh))
 
 
 def _read(file: Path) -> Any:
