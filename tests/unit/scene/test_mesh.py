@@ -71,11 +71,16 @@ def test_nodes_keep_a_mesh_whole(two_boxes: Path, kind: str) -> None:
     assert [part.faces.shape for part in parts(scene)] == [(24, 3)]
 
 
-@pytest.mark.parametrize("kind", ["glb", "obj"])
-def test_nodes_come_by_name(two_boxes: Path, kind: str) -> None:
-    scene = load_mesh(two_boxes / f"nodes.{kind}", objects="nodes")
+def test_nodes_come_by_name(two_boxes: Path) -> None:
+    scene = load_mesh(two_boxes / "nodes.obj", objects="nodes")
     assert [part.name for part in parts(scene)] == ["left", "right"]
     assert corners(scene)[0].mean() == pytest.approx(0, abs=1e-6)
+
+
+def test_nodes_of_gltf_come_as_in_the_file(two_boxes: Path) -> None:
+    scene = load_mesh(two_boxes / "nodes.glb", objects="nodes")
+    assert [part.name for part in parts(scene)] == ["right", "left"]
+    assert corners(scene)[1].mean() == pytest.approx(0, abs=1e-6)
 
 
 @pytest.mark.parametrize("kind", FORMATS)
