@@ -18,7 +18,13 @@ BLOCK_BYTES = 2**20
 
 def kind_of(file: str | PathLike[str]) -> str:
     """What a file is by its name, in small letters: ``obj`` for ``a.obj`` and for ``A.OBJ.gz``."""
-    return Path(Path(file).name.lower().removesuffix(PACKED)).suffix.removeprefix(".")
+    return Path(file).name.lower().removesuffix(PACKED).rpartition(".")[2]
+
+
+def name_of(file: str | PathLike[str]) -> str:
+    """The file's name without what tells its kind: ``a`` for ``a.obj`` and for ``a.obj.gz``."""
+    path = Path(file)
+    return Path(path.stem).stem if path.suffix.lower() == PACKED else path.stem
 
 
 def read_whole(file: Path) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.scene.scene import Floats, Material, Vector
+from simmpp.scene.scene import Floats, Material
 
 
 def as_bytes(shares: Floats) -> Floats:

@@ -20,12 +20,15 @@ from simmpp.scene.formats.text import Source, decoded, floats, integers, named, 
 from simmpp.scene.node import Node
 from simmpp.scene.scene import Floats, Material
 
-SKIPPED = frozenset(
-    "vt vn vp l p g s mg bevel c_interp d_interp lod usemap maplib shadow_obj trace_obj ctech stech"
-    " cstype deg bmat step".split()
-)
+SKIPPED = {
+    *("vt", "vn", "vp", "l", "p", "g", "s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap"),
+    *("maplib", "shadow_obj", "trace_obj", "ctech", "stech", "cstype", "deg", "bmat", "step"),
+}
 """Shading, lines, points, and settings of curves and surfaces: no polygon changes by them."""
-CURVED = "curv curv2 surf parm trim hole scrv sp end con bzp bsp cdc cdp res".split()
+CURVED = [
+    *("curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end", "con"),
+    *("bzp", "bsp", "cdc", "cdp", "res"),  # of the format's second version
+]
 REFUSED = {
     **dict.fromkeys(CURVED, "free-form curves and surfaces are not read, make them polygons"),
     **dict.fromkeys(["call", "csh"], "other files and commands are not read, put all in one file"),
@@ -39,7 +42,7 @@ def nodes(data: bytes, file: Path) -> list[Node]:
     statements.read(decoded(data))
     polygons = statements.polygons()
     faces, polygon = triangulated(polygons, source)
-    group = np.array(statements.groups)[polygon]
+    group = statements.groups()[polygon]
     order = np.argsort(group, kind="stable")
     limits = np.searchsorted(group[order], np.arange(1, len(statements.names)))
     parts = dict(zip(statements.names, np.split(faces[order], limits), strict=True))
@@ -54,45 +57,41 @@ class _Statements:
         self.coordinates: list[str] = []
         self.colours: list[str] = []
         self.corners: list[str] = []
-        self.vertex_lines, self.face_lines = array("q"), array("q")
-        self.sizes, self.groups = array("q"), array("q")
-        self.known = array("q")
-        """Of each face how many vertices stand before it."""
+        self.sizes = array("q")
+        self.vertex_lines, self.face_lines, self.name_lines = array("q"), array("q"), array("q")
         self.object = self.material = ""
         self.names = {("", ""): 0}
         """Object and material -> the number of this pair."""
-        self.group = 0
+        self.name_numbers = array("q", [0])
+        """The pair before each of ``name_lines``, and after the last."""
         self.libraries: list[str] = []
 
     def read(self, text: str) -> None:
+        coordinates, vertex_lines = self.coordinates, self.vertex_lines
+        corners, sizes, face_lines = self.corners, self.sizes, self.face_lines
         for line, content in _logical_lines(text):
             words = (content.partition("#")[0] if "#" in content else content).split()
             if not words:
                 continue
             keyword = words[0]
             if keyword == "v":
-                self._vertex(words, line)
+                vertex_lines.append(line)
+                coordinates += words[1:4]
+                if len(words) != 4:
+                    self._unusual(words, line)
             elif keyword in ("f", "fo"):
-                self._face(words, line)
+                face_lines.append(line)
+                corners += words[1:]
+                sizes.append(len(words) - 1)
             elif keyword not in SKIPPED:
                 self._other(keyword, named(content.strip()[len(keyword) :]), line)
 
-    def _vertex(self, words: list[str], line: int) -> None:
-        if len(words) < 4:
-            raise self.source.error(f"a vertex needs x, y and z, got {len(words) - 1} words", line)
-        self.coordinates += words[1:4]
-        self.vertex_lines.append(line)
-        if len(words) >= 7:
-            self.colours += words[4:7]
-
-    def _face(self, words: list[str], line: int) -> None:
-        if len(words) < 4:
-            raise self.source.error(f"a face needs 3 vertices, got {len(words) - 1}", line)
-        self.corners += [word.partition("/")[0] for word in words[1:]]
-        self.sizes.append(len(words) - 1)
-        self.face_lines.append(line)
-        self.groups.append(self.group)
-        self.known.append(len(self.vertex_lines))
+    def _unusual(self, vertex: list[str], line: int) -> None:
+        """A vertex with a weight or a colour, or no vertex."""
+        if len(vertex) < 4:
+            raise self.source.error(f"a vertex needs x, y and z, got {len(vertex) - 1}", line)
+        if len(vertex) >= 7:
+            self.colours += vertex[4:7]
 
     def _other(self, keyword: str, name: str, line: int) -> None:
         match keyword:
@@ -105,25 +104,35 @@ class _Statements:
             case _:
                 problem = REFUSED.get(keyword, "no statement of OBJ")
                 raise self.source.error(f"{shown(keyword)}: {problem}", line)
-        self.group = self.names.setdefault((self.object, self.material), len(self.names))
+        self.name_lines.append(line)
+        number = self.names.setdefault((self.object, self.material), len(self.names))
+        self.name_numbers.append(number)
+
+    def groups(self) -> Indices:
+        """Of each face the number of its pair of names."""
+        return np.array(self.name_numbers)[np.searchsorted(self.name_lines, self.face_lines)]
 
     def polygons(self) -> Polygons:
         """The faces, with vertices counted from 0; SceneError for one that is not there."""
         vertex_lines, face_lines = self.vertex_lines, self.face_lines
-        words = floats(self.coordinates, self.source, lambda i: vertex_lines[i // 3])
-        sizes = np.array(self.sizes, dtype=np.int64)
+        vertices = floats(self.coordinates, self.source, lambda i: vertex_lines[i // 3])
+        sizes, n = np.array(self.sizes), len(vertex_lines)
+        few = np.flatnonzero(sizes < 3)
+        if len(few):
+            raise self.source.error("a face needs three vertices", face_lines[few[0]])
         face = np.repeat(np.arange(len(sizes)), sizes)
-        numbers = integers(self.corners, self.source, lambda i: face_lines[face[i]])
-        known, n = np.array(self.known, dtype=np.int64)[face], len(vertex_lines)
+        words = [word.partition("/")[0] for word in self.corners]
+        numbers = integers(words, self.source, lambda i: face_lines[face[i]])
+        known = np.searchsorted(vertex_lines, face_lines)[face]
         corners = np.where(numbers > 0, numbers - 1, known + numbers)
-        wrong = (numbers == 0) | (corners < 0) | (corners >= n)
-        if wrong.any():
-            i = int(wrong.argmax())
+        wrong = np.flatnonzero((numbers == 0) | (corners < 0) | (corners >= n))
+        if len(wrong):
+            i = wrong[0]
             expected = f"expected 1 to {n}, or -1 to -{known[i]} from the last one back"
             problem = f"a face names vertex {numbers[i]}, {expected}"
             raise self.source.error(problem, face_lines[face[i]])
         lines = vertex_lines.__getitem__, face_lines.__getitem__
-        return Polygons(words.reshape(-1, 3), sizes, corners, *lines)
+        return Polygons(vertices.reshape(-1, 3), sizes, corners, *lines)
 
     def painted(self) -> Floats | None:
         """Colours (n, 3) of 0 ... 255, if every vertex has one."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.scene.formats.colours import as_bytes, matt
-from simmpp.scene.formats.ply_body import Binary, Body, Column, Text, read_element
+from simmpp.scene.formats.ply_body import Body, Column, body_of, read_element
 from simmpp.scene.formats.ply_header import read_header
 from simmpp.scene.formats.polygons import Polygons, triangulated
 from simmpp.scene.formats.text import Source
@@ -35,7 +35,7 @@ def nodes(data: bytes, file: Path) -> list[Node]:
     source = Source(file, "ply")
     data = data.removeprefix(codecs.BOM_UTF8)
     header = read_header(data, source)
-    body: Body = Binary(data, header) if header.byte_order else Text(data, header, source)
+    body = body_of(data, header, source)
     elements: dict[str, Columns] = {}
     end = 0
     for element in header.elements:

@@ -54,7 +54,7 @@ class Body(Protocol):
         """The line of a position, where there are lines."""
 
 
-class Text:
+class _Text:
     """A body of words."""
 
     def __init__(self, data: bytes, header: Header, source: Source) -> None:
@@ -84,7 +84,7 @@ class Text:
         return self.lines_before + line_of_word(self.text, at)
 
 
-class Binary:
+class _Binary:
     """A body of bytes."""
 
     def __init__(self, data: bytes, header: Header) -> None:
@@ -112,6 +112,11 @@ class Binary:
 
     def line(self, _at: int) -> None:
         return None
+
+
+def body_of(data: bytes, header: Header, source: Source) -> Body:
+    """What follows the header."""
+    return _Binary(data, header) if header.byte_order else _Text(data, header, source)
 
 
 def read_element(

@@ -26,6 +26,7 @@ TYPES = {
     **dict.fromkeys(["double", "float64"], "f8"),
 }
 """Names of types -> numpy's."""
+COUNT_TYPES = {name for name, kind in TYPES.items() if kind[0] != "f"}
 BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 COUNT = re.compile("[0-9]{1,18}")
 
@@ -88,8 +89,9 @@ def read_header(data: bytes, source: Source) -> Header:
 
 
 def _property(words: list[str], order: str) -> Property | None:
+    """A property as the words after the keyword declare it; None if they are not understood."""
     match words:
-        case ["list", count, kind, name] if {count, kind} <= TYPES.keys() and TYPES[count][0] != "f":
+        case ["list", count, kind, name] if count in COUNT_TYPES and kind in TYPES:
             return Property(name, np.dtype(order + TYPES[kind]), np.dtype(order + TYPES[count]))
         case [kind, name] if kind in TYPES:
             return Property(name, np.dtype(order + TYPES[kind]), None)

@@ -33,6 +33,8 @@ def triangulated(polygons: Polygons, source: Source) -> tuple[Indices, Indices]:
     Raises SceneError for a polygon that names no vertex, or one that is not finite.
     """
     _check(polygons, source)
+    if np.all(polygons.sizes == 3):
+        return polygons.corners.reshape(-1, 3), np.arange(len(polygons.sizes))
     faces, owners = [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
     starts = np.cumsum(polygons.sizes) - polygons.sizes
     for size in np.unique(polygons.sizes[polygons.sizes >= 3]).tolist():
@@ -62,8 +64,8 @@ def are_convex(points: Floats) -> NDArray[np.bool_]:
     points = np.ldexp(spokes, -np.frexp(np.abs(spokes).max(axis=(1, 2), keepdims=True))[1])
     n = points.shape[1]
     area = np.zeros((len(points), 3))
-    for a, b in zip(range(n), [*range(1, n), 0], strict=True):
-        area += _cross(points[:, a], points[:, b])
+    for i in range(n):
+        area += _cross(points[:, i], points[:, (i + 1) % n])
     widest = np.abs(area).argmax(axis=1)
     axes = np.array([(1, 2), (2, 0), (0, 1)])[widest]
     flat = np.take_along_axis(points, axes[:, None], axis=2)
@@ -89,7 +91,7 @@ def _check(polygons: Polygons, source: Source) -> None:
         problem = f"face {polygon + 1} names vertex {corners[corner]}, expected 0 to {n - 1}"
         raise source.error(problem, polygons.polygon_line(polygon))
     wild = ~np.all(np.abs(vertices) <= LARGEST, axis=1)
-    used = corners[wild[corners]] if wild.any() else ()
+    used = corners[wild[corners]] if wild.any() else corners[:0]
     if len(used):
         vertex = int(used[0])
         numbers = ", ".join(f"{x:g}" for x in vertices[vertex])

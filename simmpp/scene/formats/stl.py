@@ -25,7 +25,8 @@ TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 # Possessive quantifiers: what is no STL is found to be none in one pass.
 VERTEX = r"\s++vertex\s++(\S++)\s++(\S++)\s++(\S++)"
 FACET = re.compile(
-    rf"\s*+facet(?:\s++(?!outer)\S++){{0,4}}+\s++outer\s++loop{3 * VERTEX}\s++endloop\s++endfacet\b",
+    r"\s*+facet(?:\s++(?!outer)\S++){0,4}+\s++outer\s++loop"
+    rf"{3 * VERTEX}\s++endloop\s++endfacet\b",
     re.IGNORECASE,
 )
 SOLID = re.compile(r"\s*+solid\b([^\n]*+)", re.IGNORECASE)

@@ -78,7 +78,11 @@ def _integers(words: Sequence[str]) -> Indices:
 
 
 def _numbers(
-    words: Sequence[str], read: Callable[[Sequence[str]], Any], what: str, source: Source, line: Line
+    words: Sequence[str],
+    read: Callable[[Sequence[str]], Any],
+    what: str,
+    source: Source,
+    line: Line,
 ) -> Any:
     try:
         if "_" not in "".join(words):  # Python takes 1_0 for ten
