@@ -16,7 +16,7 @@ from simmpp.scene.formats.text import Source, decoded, floats, integers, shown
 from simmpp.scene.node import Node
 from simmpp.scene.scene import Material
 
-HEADER = re.compile(r"(?:\s|#[^\n]*\n)*((?:ST)?C?N?(4?n?)OFF\b)?[ \t]*(BINARY\b)?")
+HEADER = re.compile(r"(?:\s|#[^\n]*\n)*((?:ST)?C?N?(4?n?)OFF)?[ \t]*(BINARY\b)?")
 """The keyword is optional; a 4 or n says that points have other than three dimensions."""
 
 

@@ -73,9 +73,10 @@ class _Text:
         return words.count(words[0]) == len(words)
 
     def take(self, at: Indices, kind: Kind) -> NDArray[Any]:
-        read = floats if kind.kind == "f" else integers
         words = [self.words[i] for i in at.tolist()]
-        return read(words, self.source, lambda i: self.line(at[i]))
+        if kind.kind != "f":
+            return integers(words, self.source, lambda i: self.line(at[i]))
+        return floats(words, self.source, lambda i: self.line(at[i])).astype(kind)
 
     def is_blank(self, at: int) -> bool:
         return at == self.n

@@ -28,6 +28,7 @@ TYPES = {
 """Names of types -> numpy's."""
 COUNT_TYPES = {name for name, kind in TYPES.items() if kind[0] != "f"}
 BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+KEYWORDS = {"ply", "format", "element", "property"}
 COUNT = re.compile("[0-9]{1,18}")
 
 
@@ -82,6 +83,8 @@ def read_header(data: bytes, source: Source) -> Header:
                 elements[-1].properties.append(new)
             case ["end_header"] if order is not None:
                 return Header(order, elements, line, begin)
+            case [word, *_] if order is not None and not elements and word not in KEYWORDS:
+                pass  # some programs sign without the word comment
             case _:
                 problem = f"expected a line of a PLY header, got {shown(' '.join(words))}"
                 raise source.error(problem, line)
