@@ -48,8 +48,7 @@ def item(items: Sequence[T], index: int, name: str) -> T:
 
 
 def _explained(error: ErrorDetails) -> str:
-    keys = (f"[{key}]" if isinstance(key, int) else f".{key}" for key in error["loc"])
-    place = "".join(keys).lstrip(".")
+    place = "".join(map(_step, error["loc"])).lstrip(".")
     wrong = error["msg"].replace("Input should be", "expected").split(" or instance")[0]
     wrong = wrong.replace("dictionary", "object")
     if error["type"] == "missing":
@@ -57,6 +56,11 @@ def _explained(error: ErrorDetails) -> str:
     value = error["input"]
     found = f"value {shown(value)}" if isinstance(value, str | int | float) else "value"
     return f"{place or 'its JSON'}: {found}: {wrong}"
+
+
+def _step(key: int | str) -> str:
+    is_plain = isinstance(key, str) and key.isidentifier() and len(key) < 60
+    return f".{key}" if is_plain else f"[{shown(key)}]"
 
 
 def _refuse_unknown(head: Head) -> None:
