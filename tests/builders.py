@@ -218,15 +218,23 @@ _POLICY_DRAWS = (*[n for n in POLICIES if n != CEILING] * 5, *[DEFAULT_POLICY] *
 def random_policy(rng: np.random.Generator) -> PolicyParameters:
     """Any combination of parameters; replicated seldom, as it sends no messages."""
     shares = (Fraction(12, 100), Fraction(0), Fraction(1, 3), Fraction(1), Fraction(5, 2))
+    name = _pick(rng, _POLICY_DRAWS)
     return PolicyParameters(
-        name=_pick(rng, _POLICY_DRAWS),
+        name=name,
         min_load=_pick(rng, (*shares, 0, 1, 2, 7)),
         batch=int(rng.integers(1, 21)),
         ask_at_least=int(rng.integers(1, 9)),
         load_info=_pick(rng, ("piggyback", "exact", "none")),
         refresh_ps=_pick(rng, (None, None, 0, 1, 1000, 10**6)),
         merge_requests=bool(rng.integers(2)),
+        packing=_pick(rng, POLICIES[name].packings),
     )
+
+
+SHARING = PolicyParameters(
+    "concurrent", min_load=0, batch=3, ask_at_least=1, merge_requests=False, packing="all"
+)
+"""What often lets rays and requests ride together."""
 
 
 def random_case(seed: int) -> Case:
@@ -244,6 +252,17 @@ def cases() -> st.SearchStrategy[Case]:
     return st.integers(0, 2**32 - 1).map(random_case)
 
 
+def policies_of(case: Case) -> list[Case]:
+    """The same case under every policy, with everything that it may pack."""
+    return [
+        with_policy(case, name=name, packing=packing)
+        for name, policy in POLICIES.items()
+        for packing in policy.packings
+    ]
+
+
 def with_policy(case: Case, **changes: Any) -> Case:
-    """The same case under another policy."""
+    """The same case under another policy; it packs nothing where it can't pack as the case does."""
+    if case.policy.packing not in POLICIES[changes.get("name", case.policy.name)].packings:
+        changes = {"packing": "none"} | changes
     return replace(case, policy=replace(case.policy, **changes))

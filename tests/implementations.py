@@ -34,7 +34,7 @@ def result_of(engine: str, case: Case) -> Result:
         case.policy,
         engine=engine,
         ready_order=case.ready_order,
-        record=Recording(log=True, tests=True),
+        record=Recording(log=True, tests=True, hops=True),
     )
 
 
@@ -60,6 +60,7 @@ def outcome_of(result: Result) -> Outcome:
         rays=result.rays,
         tests=result.tests,
         rays_sent=result.rays_sent,
+        parts_by_kind=result.parts_by_kind,
         compute_ps=result.compute_ps.tolist(),
         communication_ps=result.communication_ps.tolist(),
         waiting_ps=result.waiting_ps.tolist(),
@@ -71,6 +72,7 @@ def outcome_of(result: Result) -> Outcome:
         activities=activities_of(slices),
         slices=slices,
         tested=list(zip(tested_rays, tested_objects, strict=True)),
+        ray_hops=[] if result.ray_hops is None else result.ray_hops.tolist(),
     )
 
 

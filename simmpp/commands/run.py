@@ -11,6 +11,7 @@ import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands import options
+from simmpp.commands.reading import print_reading
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
@@ -18,7 +19,7 @@ from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import RECORD, RESULTS, row, write_rows
+from simmpp.run.rows import RECORD, RESULTS, write_rows
 from simmpp.run.summary import summary
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
@@ -108,8 +109,9 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     finally:
         if out and runs:
             write_record(record_of_run(point, runs), out / RECORD)
-            write_rows([row(point, run) for run in runs], out / RESULTS)
+            write_rows(runs, point, out / RESULTS)
     output().print(summary(point, runs))
+    print_reading(config)
     if verify:
         _verify(point, runs)
 

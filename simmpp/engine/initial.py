@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import njit
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
-from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PIGGYBACK, Run
+from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PACKING, PIGGYBACK, Run
 from simmpp.engine.arrays.views import pes, rays
 from simmpp.engine.pe.step import note_peaks
 from simmpp.engine.record.counters import first_width
@@ -158,6 +158,7 @@ def _of_the_policy(parameters: PolicyParameters, view: NDArray[np.void]) -> dict
         "listens": listens,
         "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,
         "merge_requests": parameters.merge_requests,
+        "packing": PACKING[parameters.packing],
     }
 
 

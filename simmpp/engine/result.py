@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import ModelError
+from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
@@ -40,6 +41,8 @@ COLUMNS = (
     "events",
 )
 """Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
+PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
+"""Further ones, in rows of sweeps in which a policy packs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +53,9 @@ class Result:
     engine: str
     makespan_ps: int
     messages_by_kind: tuple[int, int, int, int]
-    """Messages sent: requests, objects, rays, loads."""
+    """Messages sent, by the kind of their first part: requests, objects, rays, loads."""
+    parts_by_kind: tuple[int, int, int, int]
+    """Parts of them; each is a message of its own where nothing is packed."""
     messages_received: int
     """Messages whose receive activity has begun; the others were in flight at the end."""
     bytes_sent: int
@@ -105,18 +110,23 @@ class Result:
         return sum(self.messages_by_kind)
 
     @property
+    def parts(self) -> int:
+        """Parts of messages, of all kinds."""
+        return sum(self.parts_by_kind)
+
+    @property
     def request_messages(self) -> int:
-        """Object requests sent."""
+        """Messages of nothing but object requests."""
         return self.messages_by_kind[REQUEST]
 
     @property
     def object_messages(self) -> int:
-        """Objects sent."""
+        """Messages of objects."""
         return self.messages_by_kind[OBJECT]
 
     @property
     def ray_messages(self) -> int:
-        """Batches of rays sent."""
+        """Messages with rays."""
         return self.messages_by_kind[RAYS]
 
     @property
@@ -125,9 +135,29 @@ class Result:
         return self.messages_by_kind[LOAD]
 
     @property
+    def request_parts(self) -> int:
+        """Object requests sent."""
+        return self.parts_by_kind[REQUEST]
+
+    @property
+    def object_parts(self) -> int:
+        """Objects sent."""
+        return self.parts_by_kind[OBJECT]
+
+    @property
+    def ray_parts(self) -> int:
+        """Batches of rays sent."""
+        return self.parts_by_kind[RAYS]
+
+    @property
     def objects_fetched(self) -> int:
-        """Objects sent as answers to requests: one in each object message."""
-        return self.object_messages
+        """Objects sent as answers to requests."""
+        return self.object_parts
+
+    @property
+    def peak_object_bytes(self) -> int:
+        """Bytes of objects (resident, fetched) held by the PE that ever held most of them."""
+        return int(self.pe_peak_object_bytes.max())
 
 
 def concluded(
@@ -140,6 +170,7 @@ def concluded(
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
     sent_by_kind, bytes_sent = state.sent_until(makespan_ps)
+    parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
         raise ModelError(f"the accounts of a PE exceed the makespan of {makespan_ps} ps")
     return Result(
@@ -147,6 +178,7 @@ def concluded(
         engine=engine,
         makespan_ps=makespan_ps,
         messages_by_kind=sent_by_kind,
+        parts_by_kind=parts_by_kind,
         messages_received=state["received"],
         bytes_sent=bytes_sent,
         rays=state["rays_done"],
@@ -159,7 +191,7 @@ def concluded(
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
-        rules_never_fired=_never_fired(state, sent_by_kind),
+        rules_never_fired=_never_fired(state, parts_by_kind),
         log=log,
         counters=state.counters() if state["record_counters"] else None,
         ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
@@ -168,9 +200,17 @@ def concluded(
     )
 
 
-def _never_fired(state: State, sent_by_kind: tuple[int, int, int, int]) -> tuple[str, ...]:
+def _parts(state: State, sent_by_kind: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+    """Only packed messages have their parts counted; of loads nothing is packed."""
+    if state["packing"] == SINGLY:
+        return sent_by_kind
+    requests, objects, rays, _ = state.arrays["parts_by_kind"].tolist()
+    return requests, objects, rays, sent_by_kind[LOAD]
+
+
+def _never_fired(state: State, parts_by_kind: tuple[int, int, int, int]) -> tuple[str, ...]:
     fired = {
-        "send": not state["sends"] or sent_by_kind[RAYS] > 0,
-        "ask": not state["asks"] or sent_by_kind[REQUEST] > 0,
+        "send": not state["sends"] or parts_by_kind[RAYS] > 0,
+        "ask": not state["asks"] or parts_by_kind[REQUEST] > 0,
     }
     return tuple(rule for rule, it_did in fired.items() if not it_did)

@@ -13,9 +13,12 @@ METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = result.COLUMNS
 """Integers of a run; empty where the method does not know."""
+PACKED = result.PACKED_COLUMNS
+"""Further ones, of sweeps in which a policy packs."""
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 
-def result_columns(further: Sequence[str] = ()) -> tuple[str, ...]:
+def result_columns(further: Sequence[str] = (), *, packs: bool = False) -> tuple[str, ...]:
     """The columns of ``results.csv`` with those of a sweep's further keys."""
-    return (*KEYS, *further, *COLUMNS[len(KEYS) :])
+    numbers = (*NUMBERS, *PACKED) if packs else NUMBERS
+    return (*KEYS, *further, METHOD, "engine", *numbers, "error")

@@ -7,7 +7,7 @@ import numpy as np
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
-from simmpp.methods.columns import NUMBERS
+from simmpp.methods.columns import NUMBERS, PACKED
 
 
 def simulation(case: Case) -> dict[str, int]:
@@ -26,5 +26,5 @@ def simulation(case: Case) -> dict[str, int]:
 
 def integers(result: Result) -> dict[str, int]:
     """The integers of a result, by column."""
-    values = {column: np.atleast_1d(getattr(result, column)) for column in NUMBERS}
+    values = {column: np.atleast_1d(getattr(result, column)) for column in (*NUMBERS, *PACKED)}
     return {column: sum(value.tolist()) for column, value in values.items()}

@@ -10,7 +10,14 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AliasPath, Field, SerializerFunctionWrapHandler, model_serializer
+from pydantic import (
+    AliasPath,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+)
 from pydantic.json_schema import SkipJsonSchema
 
 from simmpp.common.errors import ConfigError
@@ -23,6 +30,7 @@ from simmpp.common.strict import (
     declared,
     in_words,
     integer,
+    mistake,
     only,
     parsed_by,
 )
@@ -32,7 +40,7 @@ from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
 from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
 from simmpp.policy.ray_dataflow import RAY_DATAFLOW
 from simmpp.policy.replicated import REPLICATED
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.rules import DataflowPolicy, Packing
 
 POLICIES: dict[str, DataflowPolicy] = {
     "object": OBJECT_DATAFLOW,
@@ -42,6 +50,8 @@ POLICIES: dict[str, DataflowPolicy] = {
 }
 REFERENCE, CEILING = "object", "replicated"
 """Run with every point: what profits are measured against, and no dataflow at all."""
+CLASSICAL = ("object", "ray")
+"""The dataflows that the paper joins; the faster of them is what a further one has to beat."""
 DEFAULT_POLICY = "concurrent"
 """What a configuration that names none compares with object dataflow."""
 
@@ -134,6 +144,23 @@ class PolicyParameters:
     """That time. Policies whose send rule reads no load ignore it, as they ignore load_info."""
     merge_requests: Switch = True
     """One request per missing object in flight; false sends one request per waiting ray."""
+    packing: Packing = "none"
+    """What goes to one PE at one dispatch in one message: nothing, its requests (and the answers to
+    them), or all, rays with requests (the mixed dataflow of Nebel 1997)."""
+
+    @field_validator("packing")
+    @classmethod
+    def _can_pack(cls, packing: Packing, others: ValidationInfo) -> Packing:
+        policy = POLICIES.get(others.data.get("name", ""))
+        if policy is not None and packing not in policy.packings:
+            expected = f"{in_words(policy.packings)} for {policy.name}"
+            raise mistake(f"value {shown(packing)}: expected {expected}")
+        return packing
+
+    @property
+    def packs(self) -> bool:
+        """Several things may share a message."""
+        return self.packing != "none"
 
     @property
     def title(self) -> str:

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from simmpp.policy.view import View
 
 Rule = Callable[[View], int]
 """True or 1: yes."""
+Packing = Literal["none", "requests", "all"]
+"""What goes to one PE at one dispatch in one message: nothing, its requests, or everything."""
 
 
 @dataclass(frozen=True)
@@ -49,3 +52,10 @@ class DataflowPolicy:
     def asks(self) -> bool:
         """The policy has an ask rule."""
         return self.may_ask is not None
+
+    @property
+    def packings(self) -> tuple[Packing, ...]:
+        """What the policy may pack: its requests, and rays with them if it sends any."""
+        if not self.asks:
+            return ("none",)
+        return ("none", "requests", "all") if self.sends else ("none", "requests")

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
+from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 
@@ -62,12 +63,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ]
     return [
         *lines,
-        ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
-        ("messages", lambda run: f"{run.result.messages}"),
-        ("  requests", lambda run: f"{run.result.request_messages}"),
-        ("  objects", lambda run: f"{run.result.object_messages}"),
-        ("  rays", lambda run: f"{run.result.ray_messages}"),
-        ("  loads", lambda run: f"{run.result.load_messages}"),
+        *_message_lines(runs),
         ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
         ("rays sent", lambda run: f"{run.result.rays_sent}"),
         ("utilisation, least", lambda run: f"{utilisation(run).min():.1%}"),
@@ -76,6 +72,32 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("imbalance", lambda run: f"{imbalance(run):.3f}"),
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
         ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
+        ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+    ]
+
+
+def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
+    """Messages by kind and, where a policy packs, what they carry: requests, objects, batches."""
+    base = reference_of(runs).result
+    of_parts: list[tuple[str, Cell]] = [
+        ("  by what they carry", lambda run: _times(ratio(base.parts, run.result.parts)))
+    ]
+    parts: list[tuple[str, Cell]] = [
+        ("parts of messages", lambda run: f"{run.result.parts}"),
+        ("  requests", lambda run: f"{run.result.request_parts}"),
+        ("  objects", lambda run: f"{run.result.object_parts}"),
+        ("  batches of rays", lambda run: f"{run.result.ray_parts}"),
+    ]
+    packs = any(run.parameters.packs for run in runs)
+    return [
+        ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
+        *(of_parts if packs else []),
+        ("messages", lambda run: f"{run.result.messages}"),
+        ("  requests", lambda run: f"{run.result.request_messages}"),
+        ("  objects", lambda run: f"{run.result.object_messages}"),
+        ("  rays", lambda run: f"{run.result.ray_messages}"),
+        ("  loads", lambda run: f"{run.result.load_messages}"),
+        *(parts if packs else []),
     ]
 
 
@@ -95,8 +117,23 @@ def imbalance(run: PolicyRun) -> float:
     return float(busy.max() / busy.mean()) if busy.any() else 1.0
 
 
+def _best_classical(runs: Sequence[PolicyRun]) -> str:
+    """The faster classical dataflow with the same memory, and how long the other dataflows take."""
+    classical = [run for run in runs if run.parameters.name in CLASSICAL]
+    best = min(classical, key=lambda run: run.result.makespan_ps)
+    best_ps = best.result.makespan_ps
+    times = {
+        run.parameters.title: _times(ratio(run.result.makespan_ps, best_ps))
+        for run in runs
+        if run is not best and not run.all_resident
+    }
+    named = f"best classical dataflow: {best.parameters.title}, {format_ps(best_ps)}"
+    return "; ".join([named, *(f"{title} takes {n} times as long" for title, n in times.items())])
+
+
 def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
-    notes = [f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"]
+    bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
+    notes = [bound, _best_classical(runs)]
     notes += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

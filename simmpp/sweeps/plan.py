@@ -16,7 +16,8 @@ from simmpp.common.files import Row
 from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
 from simmpp.config.config import Config, Source
-from simmpp.methods.columns import KEYS, METHOD
+from simmpp.config.defaults import READING
+from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import record, recorded
@@ -55,6 +56,12 @@ class Plan:
         return (*self.further, METHOD) if METHOD in swept else self.further
 
     @property
+    def result_columns(self) -> tuple[str, ...]:
+        """Columns of ``results.csv``."""
+        packs = any(planned.point.policy.packs for planned in self.points)
+        return result_columns(self.further, packs=packs)
+
+    @property
     def tasks(self) -> list[Task]:
         """What is to be simulated, once each; neighbours share a workload and a placement."""
         tasks = {planned.task.key: planned.task for planned in self.points}
@@ -66,11 +73,12 @@ class Plan:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What must be equal for results to be continued."""
+        """What must be equal for results to be continued; a reading counts by what it gives."""
+        settings = {key: said for key, said in recorded(self.config).items() if key != READING}
         keys = "".join(sorted({planned.task.key for planned in self.points}))
         return {
             "versions": result_versions(),
-            "config": recorded(self.config),
+            "config": settings,
             "workloads": self.workloads,
             "points": hashlib.sha256(keys.encode()).hexdigest(),
         }

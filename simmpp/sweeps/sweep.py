@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
-from simmpp.methods.columns import result_columns
 from simmpp.run.inputs import cache_workload
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import write_record
@@ -186,7 +185,7 @@ def tables_of(plan: Plan, results: Results) -> TablesByFile:
     profits = profit_rows(rows, keys, plan.config.settings.tolerance)
     timings = plan.timings(results.outcomes, results.trace_s)
     return {
-        RESULTS: (rows, result_columns(plan.further)),
+        RESULTS: (rows, plan.result_columns),
         PROFITS: (profits, profit_columns(keys)),
         TIMINGS: (timings, plan.timing_columns),
     }

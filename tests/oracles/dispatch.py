@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from oracles.costs import hops_from
 from oracles.rules import View, numbers
-from oracles.state import PE
+from oracles.state import PE, Part
 from oracles.world import World
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.policy.rules import Rule
+
+Parcel = tuple[int, list[Part]]
+"""A destination, and what goes to it in one message."""
 
 
 class Dispatch(World):
@@ -17,15 +21,36 @@ class Dispatch(World):
 
     def send_all(self, time: int, pe: PE) -> int:
         """Send all that may be sent from a time on; returns the end of that."""
-        nothing_else = not pe.ready and not pe.inbox
-        clock = time
-        if self.rules.may_send:
-            clock = self.send_rays(clock, pe, nothing_else, self.rules.may_send)
-        if self.rules.may_ask:
-            clock = self.ask(clock, pe, nothing_else, self.rules.may_ask)
+        pe.clock = time
+        decisions = self.decisions(pe)
+        # One by one, what has been decided departs before the next decision; else all are made
+        # before the first message is packed.
+        if self.policy.packing == "none":
+            messages: Iterable[Parcel] = ((owner, [part]) for owner, part in decisions)
+        else:
+            messages = self.packed(pe, list(decisions))
+        for destination, parts in messages:
+            pe.clock = self.send(pe.clock, pe, destination, parts)
         if self.policy.load_info == "piggyback" and pe.refresh_allowed:
-            clock = self.refresh(clock, pe)
-        return clock
+            self.refresh(pe)
+        return pe.clock
+
+    def decisions(self, pe: PE) -> Iterator[tuple[int, Part]]:
+        """To whom what goes: rays, then requests; each is decided when it is drawn."""
+        nothing_else = not pe.ready and not pe.inbox
+        if self.rules.may_send:
+            yield from self.rays_to_send(pe, nothing_else, self.rules.may_send)
+        if self.rules.may_ask:
+            yield from self.requests(pe, nothing_else, self.rules.may_ask)
+
+    def packed(self, pe: PE, decided: list[tuple[int, Part]]) -> Iterator[Parcel]:
+        """Messages of what has been decided, those that may share one together."""
+        shared = {"requests": ((RAYS,), (REQUEST,)), "all": ((RAYS, REQUEST),)}
+        for kinds in shared[self.policy.packing]:
+            for other in self.others(pe):
+                parts = [part for to, part in decided if to == other and part.kind in kinds]
+                if parts:
+                    yield other, parts
 
     def others(self, pe: PE) -> list[int]:
         """All other PEs, beginning with the next one."""
@@ -37,18 +62,18 @@ class Dispatch(World):
         by_age = sorted(objects, key=lambda o: pe.sendable_since[o])
         return [ray for o in by_age for ray in pe.rays_of(o)]
 
-    def send_rays(self, clock: int, pe: PE, nothing_else: bool, may_send: Rule) -> int:
-        """One message to each owner that the rule allows."""
+    def rays_to_send(
+        self, pe: PE, nothing_else: bool, may_send: Rule
+    ) -> Iterator[tuple[int, Part]]:
+        """One batch to each owner that the rule allows."""
         for owner in self.others(pe):
             rays = self.sendable(pe, owner)
-            known, age = self.known_load(clock, pe, owner)
+            known, age = self.known_load(pe.clock, pe, owner)
             seen = {"nothing_else": nothing_else, "known_load": known, "age_ps": age}
             if not rays or not may_send(self.view(pe, owner, waiting=len(rays), **seen)):
                 continue
             pe.unfile(rays)
-            size = len(rays) * self.machine.ray_bytes
-            clock = self.send(clock, pe, RAYS, owner, size, rays=tuple(rays))
-        return clock
+            yield owner, Part(RAYS, len(rays) * self.machine.ray_bytes, rays=tuple(rays))
 
     def view(self, pe: PE, owner: int, **seen: int | Fraction) -> View:
         """What a rule of this PE sees when it decides about something that another one owns."""
@@ -71,7 +96,7 @@ class Dispatch(World):
             return [] if pe.in_flight[obj] else entries
         return entries[pe.in_flight[obj] :]
 
-    def ask(self, clock: int, pe: PE, nothing_else: bool, may_ask: Rule) -> int:
+    def requests(self, pe: PE, nothing_else: bool, may_ask: Rule) -> Iterator[tuple[int, Part]]:
         """Requests for each object that the rule allows."""
         oldest = {o: self.unasked(pe, o) for o in {o for _, o, _ in pe.waiting}}
         seen = {"nothing_else": nothing_else, "known_load": -1, "age_ps": 0}
@@ -80,17 +105,14 @@ class Dispatch(World):
             if not may_ask(view):
                 continue
             for _ in oldest[obj][:1] if self.policy.merge_requests else oldest[obj]:
-                size = self.machine.request_bytes
-                clock = self.send(clock, pe, REQUEST, self.owners[obj], size, obj=obj)
+                yield self.owners[obj], Part(REQUEST, self.machine.request_bytes, obj)
                 pe.in_flight[obj] += 1
-        return clock
 
-    def refresh(self, clock: int, pe: PE) -> int:
+    def refresh(self, pe: PE) -> None:
         """The own load to every partner that was sent nothing for long."""
         if self.policy.refresh_ps is None or not self.rules.knows_loads:
-            return clock
+            return
         for other in self.others(pe):
-            silence = clock - pe.last_departure[other]
+            silence = pe.clock - pe.last_departure[other]
             if other in pe.peers and silence >= self.policy.refresh_ps:
-                clock = self.send(clock, pe, LOAD, other, 0)
-        return clock
+                pe.clock = self.send(pe.clock, pe, other, [Part(LOAD, 0)])

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from oracles.state import PE, Message
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 
 
 class Slice(NamedTuple):
@@ -29,6 +29,10 @@ class Slice(NamedTuple):
     number: int = -1
     """The sender's send number; -1 if the message never departed."""
     payload_bytes: int = 0
+    objects: int = 0
+    """In the message."""
+    requests: int = 0
+    """In the message."""
 
 
 @dataclass
@@ -42,6 +46,8 @@ class Outcome:
     rays: int
     tests: int
     rays_sent: int
+    parts_by_kind: tuple[int, int, int, int]
+    """Requests, objects, batches of rays and loads that messages carried."""
     compute_ps: list[int]
     communication_ps: list[int]
     waiting_ps: list[int]
@@ -57,6 +63,8 @@ class Outcome:
     """Every message unpacked or packed and every computation, those of a PE one after another."""
     tested: list[tuple[int, int]]
     """(ray, object) in the order performed: by the beginnings of the computes."""
+    ray_hops: list[int]
+    """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
 
 
 @dataclass
@@ -75,6 +83,7 @@ class Ledger:
     tested: list[tuple[int, int]] = field(default_factory=list)
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
+    ray_hops: list[int] = field(default_factory=list)
     held_rays: list[int] = field(default_factory=list)
     held_bytes: list[int] = field(default_factory=list)
 
@@ -104,7 +113,8 @@ class Ledger:
         if m is not None:
             state |= {"kind": m.kind, "number": m.send_number, "payload_bytes": m.payload_bytes}
             state |= {"other": m.source if what == "receive" else m.destination}
-            state |= {"rays": len(m.rays)}
+            state |= {"rays": m.n_rays}
+            state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
 
     def clipped(self, end: int) -> list[Slice]:
@@ -132,7 +142,8 @@ class Ledger:
         sent = [m for m in self.sent if m.departure <= end]
         by_kind = [sum(m.kind == kind for m in sent) for kind in range(4)]
         requests, objects, rays, loads = by_kind
-        fired = {"send": rays > 0, "ask": requests > 0}
+        parts = [sum(m.count(kind) for m in sent) for kind in range(4)]
+        fired = {"send": parts[RAYS] > 0, "ask": parts[REQUEST] > 0}
         compute = [self.account("compute", k) for k in range(processors)]
         communication = [self.account("communication", k) for k in range(processors)]
         activities = [(*row[:3], min(row[3], end), row[4]) for row in self.activities]
@@ -143,7 +154,8 @@ class Ledger:
             bytes_sent=sum(m.payload_bytes + header_bytes for m in sent),
             rays=len(self.finished_ps),
             tests=len(self.tested),
-            rays_sent=sum(len(m.rays) for m in sent),
+            rays_sent=sum(m.n_rays for m in sent),
+            parts_by_kind=(parts[0], parts[1], parts[2], parts[3]),
             compute_ps=compute,
             communication_ps=communication,
             waiting_ps=[end - a - b for a, b in zip(compute, communication, strict=True)],
@@ -155,4 +167,5 @@ class Ledger:
             activities=sorted(activities, key=lambda row: row[:2]),
             slices=self.clipped(end),
             tested=self.tested,
+            ray_hops=self.ray_hops,
         )

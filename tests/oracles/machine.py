@@ -8,14 +8,14 @@ classes and the rules of policies, which it asks about all that waits, enough or
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from typing import Any
 
-from oracles.costs import copy_ps, intersection_ps
+from oracles.costs import copy_ps, hops_from, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
-from oracles.state import PE, Message
+from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
@@ -76,28 +76,37 @@ class Simulation(Dispatch):
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
         cost = self.machine.receive_startup_ps
-        cost += copy_ps(self.machine.unpack[message.kind], message.payload_bytes)
+        unpack = self.machine.unpack
+        cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)
         self.ledger.received += 1
         pe.known_load[message.source] = Fraction(message.load)
         pe.heard[message.source] = clock
-        if message.kind in (OBJECT, RAYS):
+        if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
-        if message.kind == OBJECT:
-            self.release(pe, message.obj)
-        elif message.kind == RAYS:
-            pe.make_ready(list(message.rays), self.ready_order)
-        elif message.kind == LOAD:
-            pe.refresh_allowed = False
+        pe.refresh_allowed = not message.count(LOAD)
+        far = hops_from(self.machine.shape, message.source)[pe.number]
+        for part in message.parts:
+            if part.kind == RAYS:
+                pe.make_ready(list(part.rays), self.ready_order)
+                self.cross(part.rays, far)
+            elif part.kind == OBJECT:
+                self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
-        if message.kind == REQUEST:
-            size = self.object_bytes[message.obj]
-            clock = self.send(clock, pe, OBJECT, message.source, size, obj=message.obj)
+        wanted = [part.obj for part in message.parts if part.kind == REQUEST]
+        if wanted:
+            answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
+            clock = self.send(clock, pe, message.source, answer)
         self.sample_rays(pe)
         return clock
 
-    def release(self, pe: PE, obj: int) -> None:
-        """A fetched object is here: grant waiting rays their test."""
+    def cross(self, rays: Iterable[int], links: int) -> None:
+        """Something crossed links for these rays."""
+        for ray in rays:
+            self.ledger.ray_hops[ray] += links
+
+    def release(self, pe: PE, obj: int) -> list[int]:
+        """A fetched object is here: grant waiting rays their test; returns these."""
         pe.in_flight[obj] -= 1
         waiting = pe.rays_of(obj)
         released = waiting if self.policy.merge_requests else waiting[:1]
@@ -108,6 +117,7 @@ class Simulation(Dispatch):
             pe.sendable_since[obj] = pe.next_rank()
         if self.placement.transient > 0:
             pe.keep(obj, self.placement.transient)
+        return released
 
     def compute(self, time: int, pe: PE) -> int:
         """Up to a quantum of tests; returns the end of that."""

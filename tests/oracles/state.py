@@ -5,22 +5,48 @@ from __future__ import annotations
 from collections import Counter, deque
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import NamedTuple
+
+
+class Part(NamedTuple):
+    """What is packed and unpacked at one go: a batch of rays, a request, an object, or nothing."""
+
+    kind: int
+    payload_bytes: int
+    obj: int = -1
+    rays: tuple[int, ...] = ()
 
 
 @dataclass
 class Message:
     """One message, with what its header and its payload carry."""
 
-    kind: int
     source: int
     destination: int
     send_number: int
-    payload_bytes: int
+    parts: tuple[Part, ...]
     load: int
     """The sender's load at packing, without the rays in this message."""
     departure: int
-    obj: int = -1
-    rays: tuple[int, ...] = ()
+
+    @property
+    def kind(self) -> int:
+        """That of the first part."""
+        return self.parts[0].kind
+
+    @property
+    def payload_bytes(self) -> int:
+        """Of all parts."""
+        return sum(part.payload_bytes for part in self.parts)
+
+    @property
+    def n_rays(self) -> int:
+        """In all parts."""
+        return sum(len(part.rays) for part in self.parts)
+
+    def count(self, kind: int) -> int:
+        """How many parts are of a kind."""
+        return sum(part.kind == kind for part in self.parts)
 
 
 @dataclass
@@ -51,6 +77,8 @@ class PE:
     ranks: int = 0
     peers: set[int] = field(default_factory=set)
     last_departure: Counter[int] = field(default_factory=Counter)
+    clock: int = 0
+    """The time at which this PE is with what it sends at a dispatch."""
     ended_load: int = 0
     """Load at the end of the last ended activity."""
     refresh_allowed: bool = True

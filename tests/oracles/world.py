@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
@@ -11,7 +12,7 @@ from typing import Any
 from oracles.costs import copy_ps, network_ps
 from oracles.ledger import Ledger
 from oracles.network import Network
-from oracles.state import PE, Message
+from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.placement.placement import Placement
@@ -46,6 +47,7 @@ class World:
         objects = [int(o) for o in self.workload.itinerary_objects]
         self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
         self.positions = [0] * self.workload.n_rays
+        self.ledger.ray_hops = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         for pe in self.pes:
             self.sample_rays(pe)
@@ -71,41 +73,23 @@ class World:
         """Charge a PE; returns the time when it has paid."""
         return self.ledger.pay(account, pe.number, clock, cost)
 
-    def send(
-        self,
-        clock: int,
-        pe: PE,
-        kind: int,
-        destination: int,
-        payload_bytes: int,
-        obj: int = -1,
-        rays: tuple[int, ...] = (),
-    ) -> int:
+    def send(self, clock: int, pe: PE, destination: int, parts: Sequence[Part]) -> int:
         """Pack a message and let it depart; returns the time of that."""
         begin = clock
-        cost = self.machine.send_startup_ps + copy_ps(self.machine.pack[kind], payload_bytes)
+        cost = self.machine.send_startup_ps
+        cost += sum(copy_ps(self.machine.pack[part.kind], part.payload_bytes) for part in parts)
         clock = self.pay("communication", pe, clock, cost)
-        message = Message(
-            kind=kind,
-            source=pe.number,
-            destination=destination,
-            send_number=pe.sends,
-            payload_bytes=payload_bytes,
-            load=pe.load,
-            departure=clock,
-            obj=obj,
-            rays=rays,
-        )
+        message = Message(pe.number, destination, pe.sends, tuple(parts), pe.load, clock)
         pe.sends += 1
         pe.last_departure[destination] = clock
-        if kind in (OBJECT, RAYS):
+        if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(destination)
         self.ledger.sent.append(message)
         self.ledger.did(pe, begin, "send", clock, message)
         if self.machine.contention == "links":
             self.come_to(clock, message, self.network.way(message))
         else:
-            flight = network_ps(self.machine, pe.number, destination, payload_bytes)
+            flight = network_ps(self.machine, pe.number, destination, message.payload_bytes)
             self.let_arrive(clock + flight, message)
         return clock
 

@@ -101,6 +101,7 @@ ARRAYS = {
     "rule_view": Array(VIEW),  # (1,) what a rule is shown; filled anew for each question
     # of the run
     "sent_by_kind": Array(I8, lambda n: len(MESSAGE_KINDS)),
+    "parts_by_kind": Array(I8, lambda n: len(MESSAGE_KINDS)),  # that all messages are made of
     "pes": Array(PE, lambda n: n.nb),
     "rays": Array(RAY, lambda n: n.rays),
     "misses": Array(MISS, lambda n: n.misses),  # objects that a PE lacks, or holds for a while
@@ -128,8 +129,11 @@ ARRAYS = {
     "sendable_ends": Array(I4, lambda n: 2 * n.peers),
     "sendable_links": Array(I4, lambda n: 2 * n.misses),
     "outbox": Array(I4, lambda n: n.sent),  # messages that the last step sent, in order
-    "sort_keys": Array(I8, lambda n: max(n.objects, n.nb)),
-    "sort_items": Array(I8, lambda n: max(n.objects, n.nb)),
+    # First parts, plus 1, of the messages that a dispatch is making up: of rays and what goes with
+    # them by distance in the ring, of requests alone nb further on.
+    "made_up": Array(I4, lambda n: 2 * n.nb),
+    "sort_keys": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
+    "sort_items": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
@@ -182,6 +186,7 @@ PARAMETERS = (
     "listens",  # remembers the loads in headers
     "refresh_ps",  # NONE: no refresh
     "merge_requests",
+    "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
     "logs",

@@ -77,7 +77,8 @@ MESSAGE = np.dtype(
         ("depart_ps", "i8"),
         ("number", "i8"),  # the sender's send number
         ("load", "i8"),  # the sender's, at packing, without the rays in the message
-        ("payload_bytes", "i8"),
+        ("payload_bytes", "i8"),  # of all parts of the message
+        ("part_bytes", "i8"),  # of this part alone
         ("arrival_ps", "i8"),
         ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
         ("head_ps", "i8"),  # when its head is at the next link or port,
@@ -86,11 +87,13 @@ MESSAGE = np.dtype(
         ("source", "i4"),
         ("chain", "i4"),
         ("next", "i4"),  # in the inbox
+        ("part", "i4"),  # the message's next part, which is a row of its own; NONE: the last
+        ("last_part", "i4"),  # of a message, in the row of its first part
         ("obj", "i4"),
         ("first", "i4"),  # rays
         ("last", "i4"),
         ("n", "i4"),
-        ("kind", "i4"),  # NONE: a free place
+        ("kind", "i4"),  # of this part, and so of the message; NONE: a free place
     ],
     align=True,
 )
@@ -107,13 +110,15 @@ EVENT = np.dtype(
         ("pe", "i4"),  # who receives, computes or sends; destination of an arrival
         ("other", "i4"),  # who the message comes from or, SEND, goes to; NONE without one
         ("rays", "i4"),  # in the message; finished by a COMPUTE
+        ("objects", "i4"),  # in the message
+        ("requests", "i4"),  # in the message
         ("load", "i4"),  # of the PE, when it is done
         ("ready", "i4"),  # rays of the load that are ready then; the others wait
         ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
         ("kind", "i2"),  # of the message; NONE without one
     ]
 )
-"""One row of the event log, a cache line."""
+"""One row of the event log."""
 
 EVENT_KEY = np.dtype(
     [
@@ -165,6 +170,8 @@ SLICE = np.dtype(
 
 PIGGYBACK, EXACT, NO_INFO = range(3)
 LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
+SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
+PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
 BEGIN, DISPATCH = range(2)
 ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
 PACK, UNPACK = 0, 4

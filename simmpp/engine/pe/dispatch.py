@@ -1,7 +1,8 @@
 """What a PE does with waiting rays at the end of an activity: its policy's two rules.
 
 Sends come before asks; owners in the order me + 1, me + 2, ... (mod nb), objects by the ray that
-has waited longest. The decisions cost nothing, the messages do.
+has waited longest. The decisions cost nothing, the messages do: each is sent as soon as it is
+decided on or, with packing, when all is decided (``send_made_up``).
 
 An example, concurrent dataflow with batch 2 and ask_at_least 3: rays 4, 6 and 9 wait for object 20
 of PE 3 and ray 5 for object 21 of PE 0; PE 1 decides, still has ready rays and holds 8 rays in all.
@@ -21,7 +22,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, clear, first, following, sort_by_key
-from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, Row, Run
+from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, SINGLY, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,
@@ -38,7 +39,7 @@ from simmpp.engine.arrays.views import (
     unsent,
 )
 from simmpp.engine.pe.misses import drop_if_idle, set_peer_sendable, set_unasked, withdraw
-from simmpp.engine.pe.sending import send_load, send_rays, send_request
+from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
 from simmpp.engine.record.counters import note_work
 from simmpp.policy.compiled_rules import allows
 from simmpp.policy.view import show
@@ -55,6 +56,8 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
         clock_ps = _send_rays(s, me, clock_ps)
     if s.asks:
         clock_ps = _ask_for_objects(s, me, clock_ps)
+    if s.packing != SINGLY:
+        clock_ps = send_made_up(s, me, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
         clock_ps = _refresh_loads(s, me, clock_ps)
     if s.record_counters and clock_ps > now_ps:

@@ -1,22 +1,32 @@
-"""Packing messages, one function for each kind; each returns the moment when it has been packed."""
+"""Messages: made up of parts, packed, and let go.
+
+A message is one part, or several that share its startups and its header: rays, then objects, then
+requests. Without packing whatever a dispatch decides on is a message of its own and departs at
+once. With it the dispatch only makes messages up, one for each PE, and they are packed when all is
+decided. Each function returns the moment when what it sent has been packed.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import take
-from simmpp.engine.arrays.records import NONE, PACK, Run
+from simmpp.engine.arrays.hashtable import give_back, sort_by_key, take
+from simmpp.engine.arrays.records import NONE, PACK, REQUESTS_TOGETHER, SINGLY, Row, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
+    made_up,
     message_marks,
     messages,
     object_bytes,
     outbox,
     owners,
+    parts_by_kind,
     peer_rows,
     pes,
     sent_by_kind,
+    sort_items,
+    sort_keys,
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.misses import note_exchange, peer_of
@@ -28,61 +38,147 @@ from simmpp.machine.transfer import transfer_ps
 
 @kernel
 def copy_ps(cost: Any, payload_bytes: int) -> int:
-    """Packing or unpacking of one message: fixed + per byte of payload."""
+    """Packing or unpacking of one part: fixed + per byte of payload."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
+
+
+@kernel
+def parts_ps(s: Run, message: int, which: int) -> int:
+    """Packing (``which`` is PACK) or unpacking (UNPACK) of all parts of a message."""
+    m = messages(s)[message]
+    cost_ps = copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
+    while m.part != NONE:
+        m = messages(s)[m.part]
+        cost_ps += copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
+    return cost_ps
 
 
 @kernel
 def send_request(s: Run, me: int, obj: int, now_ps: int) -> int:
     """Ask the owner of an object for it."""
-    row = _new_message(s, REQUEST, owners(s)[obj], s.request_bytes)
+    row = _new_part(s, REQUEST, owners(s)[obj], s.request_bytes)
     messages(s)[row].obj = obj
-    return _send(s, me, row, now_ps)
-
-
-@kernel
-def answer(s: Run, me: int, requester: int, obj: int, now_ps: int) -> int:
-    """Send an object to who asked for it."""
-    row = _new_message(s, OBJECT, requester, object_bytes(s)[obj])
-    messages(s)[row].obj = obj
-    return _send(s, me, row, now_ps)
+    return _post(s, me, row, now_ps)
 
 
 @kernel
 def send_rays(s: Run, me: int, owner: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
-    row = _new_message(s, RAYS, owner, n * s.ray_bytes)
+    row = _new_part(s, RAYS, owner, n * s.ray_bytes)
     m = messages(s)[row]
     m.first, m.last, m.n = first, last, n
-    return _send(s, me, row, now_ps)
+    return _post(s, me, row, now_ps)
 
 
 @kernel
 def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
     """Tell another PE the load, which is in every header: there is nothing else in this message."""
-    return _send(s, me, _new_message(s, LOAD, other, 0), now_ps)
+    return _send(s, me, _new_part(s, LOAD, other, 0), now_ps)
 
 
 @kernel
-def _new_message(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+def answer(s: Run, me: int, message: int, now_ps: int) -> int:
+    """Send what a message asks for, all in one message, to who sent it."""
+    answering, part = NONE, message
+    while part != NONE:
+        m = messages(s)[part]
+        if m.kind == REQUEST:
+            row = _new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
+            messages(s)[row].obj = m.obj
+            if answering == NONE:
+                answering = row
+            else:
+                _append(s, answering, row)
+        part = m.part
+    return _send(s, me, answering, now_ps) if answering != NONE else now_ps
+
+
+@kernel
+def forget(s: Run, message: int) -> None:
+    """Give back the places of a message and its parts."""
+    part = message
+    while part != NONE:
+        m = messages(s)[part]
+        following = m.part
+        m.kind = NONE
+        give_back(messages(s), message_marks(s), part)
+        part = following
+
+
+@kernel
+def _new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+    """A message of one part, which may become a part of another one."""
     row = take(messages(s), message_marks(s))
     m = messages(s)[row]
-    m.kind, m.destination, m.payload_bytes = kind, destination, payload_bytes
+    m.kind, m.destination = kind, destination
+    m.payload_bytes = m.part_bytes = payload_bytes
     m.obj, m.n = NONE, 0
+    m.part, m.last_part = NONE, row
+    m.depart_ps = NONE  # a later part never departs by itself
     return row
+
+
+@kernel
+def _append(s: Run, message: int, part: int) -> None:
+    """Make a message of one part the last part of another one."""
+    m = messages(s)[message]
+    messages(s)[m.last_part].part = part
+    m.last_part = part
+    m.payload_bytes += messages(s)[part].part_bytes
+
+
+@kernel
+def _post(s: Run, me: int, row: int, now_ps: int) -> int:
+    """Send what a dispatch has decided on, or put it to what else goes to that PE."""
+    if s.packing == SINGLY:
+        return _send(s, me, row, now_ps)
+    place = _place(s, me, messages(s)[row])
+    if made_up(s)[place] > 0:
+        _append(s, made_up(s)[place] - 1, row)
+    else:
+        made_up(s)[place] = row + 1
+        outbox(s)[s.n_sent] = row
+        s.n_sent += 1
+    return now_ps
+
+
+@kernel
+def _place(s: Run, me: int, m: Row) -> int:
+    """Where ``made_up`` has the message that a part goes into; messages depart in this order."""
+    distance = (m.destination - me) % s.processors
+    alone = s.packing == REQUESTS_TOGETHER and m.kind == REQUEST
+    return distance + s.processors if alone else distance
+
+
+@kernel
+def send_made_up(s: Run, me: int, now_ps: int) -> int:
+    """Pack the messages that a dispatch has made up, in ring order from me."""
+    n = s.n_sent
+    for i in range(n):
+        row = outbox(s)[i]
+        place = _place(s, me, messages(s)[row])
+        made_up(s)[place] = 0
+        sort_keys(s)[i], sort_items(s)[i] = place, row
+    sort_by_key(sort_keys(s), sort_items(s), n)
+    s.n_sent = 0
+    clock_ps = now_ps
+    for i in range(n):
+        clock_ps = _send(s, me, sort_items(s)[i], clock_ps)
+    return clock_ps
 
 
 @kernel
 def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
     pe, m = pes(s)[me], messages(s)[row]
-    cost_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + m.kind], m.payload_bytes)
     m.source, m.load, m.number = me, pe.load, pe.messages_sent
-    m.depart_ps = now_ps + cost_ps
+    m.depart_ps = now_ps + s.send_startup_ps + parts_ps(s, row, PACK)
     depart(s, m)
     pe.messages_sent += 1
     sent_by_kind(s)[m.kind] += 1
     s.bytes_sent += m.payload_bytes + s.header_bytes
+    if s.packing != SINGLY:
+        _count_parts(s, row)
     if s.refresh_ps != NONE:
         peer_row = peer_of(s, me, m.destination)
         peer_rows(s)[peer_row].sent_ps = m.depart_ps
@@ -95,3 +191,11 @@ def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return m.depart_ps
+
+
+@kernel
+def _count_parts(s: Run, message: int) -> None:
+    part = message
+    while part != NONE:
+        parts_by_kind(s)[messages(s)[part].kind] += 1
+        part = messages(s)[part].part

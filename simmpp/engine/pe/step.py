@@ -9,13 +9,11 @@ messages that it leaves in the outbox; they know nothing of rays, objects or pol
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import find, give_back
+from simmpp.engine.arrays.hashtable import find
 from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Row, Run
 from simmpp.engine.arrays.views import (
-    copy_costs,
     itinerary_objects,
     itinerary_offsets,
-    message_marks,
     messages,
     misses,
     peer_rows,
@@ -29,11 +27,11 @@ from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory, note_exchange, peer_of
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
-from simmpp.engine.pe.sending import answer, copy_ps
+from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, OBJECT, RAYS
 
 SLEEP = -1
 
@@ -91,31 +89,39 @@ def note_peaks(s: Run, pe: Row) -> None:
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack one message and do what it asks for; returns the end of that work."""
     pe, m = pes(s)[me], messages(s)[message]
-    clock_ps = now_ps + s.receive_startup_ps
-    clock_ps += copy_ps(copy_costs(s)[UNPACK + m.kind], m.payload_bytes)
+    clock_ps = now_ps + s.receive_startup_ps + parts_ps(s, message, UNPACK)
     # Heard before an answer is packed, and whatever the message is.
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
-    if m.kind == OBJECT:
-        admit_object(s, me, m.obj)
-    elif m.kind == RAYS:
-        pe.load += m.n
-        pe.peak_rays = max(pe.peak_rays, pe.load)
-        make_ready(s, me, m.first, m.last, m.n)
+    part = message
+    while part != NONE:
+        _take_in(s, me, messages(s)[part])
+        part = messages(s)[part].part
     if s.logs:
         note_receive(s, me, message, now_ps, clock_ps)
     if s.record_counters and m.kind == RAYS:
         note_load(s, me, clock_ps)
-    if m.kind == REQUEST:
-        # Answered as part of the receipt, not by the policy: no one can be left waiting by a rule.
-        clock_ps = answer(s, me, m.source, m.obj, clock_ps)
+    # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
+    # a rule.
+    clock_ps = answer(s, me, message, clock_ps)
     s.received += 1
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
-    m.kind = NONE
-    give_back(messages(s), message_marks(s), message)
+    forget(s, message)
     return clock_ps
+
+
+@kernel
+def _take_in(s: Run, me: int, m: Row) -> None:
+    """The part of a message that rays or an object are."""
+    if m.kind == OBJECT:
+        admit_object(s, me, m.obj)
+    elif m.kind == RAYS:
+        pe = pes(s)[me]
+        pe.load += m.n
+        pe.peak_rays = max(pe.peak_rays, pe.load)
+        make_ready(s, me, m.first, m.last, m.n)
 
 
 @kernel

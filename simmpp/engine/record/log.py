@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
 from simmpp.engine.arrays.views import log, messages, pes
+from simmpp.machine.messages import OBJECT, REQUEST
 
 LOG_ROWS = 1 << 13
 """Rows that are kept before they are handed on: half a megabyte."""
@@ -68,6 +69,7 @@ def _note(s: Run, pe: int, event: int, tests: int, rays: int, begin_ps: int, end
     row.time_ps, row.end_ps, row.event = begin_ps, end_ps, event
     row.pe, row.tests, row.rays = pe, tests, rays
     row.load, row.ready = pes(s)[pe].load, pes(s)[pe].n_ready
+    row.objects = row.requests = 0
     s.n_logged += 1
 
 
@@ -76,6 +78,14 @@ def _note_message(s: Run, message: int, other: int) -> None:
     m, event = messages(s)[message], log(s)[s.n_logged - 1]
     event.other, event.kind = other, m.kind
     event.number, event.payload_bytes = m.number, m.payload_bytes
+    part = message
+    while part != NONE:
+        kind = messages(s)[part].kind
+        if kind == OBJECT:
+            event.objects += 1
+        elif kind == REQUEST:
+            event.requests += 1
+        part = messages(s)[part].part
 
 
 def hand_on(rows: NDArray[np.void], now_ps: int, sink: Sink) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from simmpp.common.files import Row
-from simmpp.methods.columns import NUMBERS
+from simmpp.methods.columns import NUMBERS, PACKED
 from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import KEY_AXES
@@ -24,6 +24,7 @@ def depth_of(points: Points) -> dict[str, Any]:
     profits = points.profits
     titles = list(styles_of(profits))
     rows = [(number, row) for number, runs in enumerate(points.runs) for row in runs]
+    packed = [name for name in PACKED if rows and name in rows[0][1]]
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
         "policies": [words.policy(title) for title in titles],
@@ -39,7 +40,10 @@ def depth_of(points: Points) -> dict[str, Any]:
         },
         "rows": {
             "point": [number for number, _ in rows],
-            **{name: _column((row for _, row in rows), name) for name in ("seed", *NUMBERS)},
+            **{
+                name: _column((row for _, row in rows), name)
+                for name in ("seed", *NUMBERS, *packed)
+            },
         },
     }
 

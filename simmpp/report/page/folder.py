@@ -12,7 +12,7 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
-from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS
+from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS, PACKED
 from simmpp.run.record import read_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
 from simmpp.studies.bench.bench import BENCH
@@ -21,8 +21,8 @@ from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS
 from simmpp.sweeps.profits import profit_columns
 
-INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS}, {"fraction", "effective_fraction"}
-MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS}
+INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS, *PACKED}, {"fraction", "effective_fraction"}
+MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS, *PACKED}
 """A memory given in bytes has no fraction, a failed point no results, and a method does not know
 all of them."""
 
@@ -99,7 +99,7 @@ def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:
 def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     """The rows of a ``results.csv`` with numbers as such, and the columns of further keys."""
     texts = _table(path, COLUMNS)
-    further = tuple(name for name in (texts[0] if texts else ()) if name not in COLUMNS)
+    further = tuple(name for name in (texts[0] if texts else ()) if name not in (*COLUMNS, *PACKED))
     if len({row[METHOD] for row in texts}) > 1:
         further = (*further, METHOD)
     rows = [_typed(row, path, line) for line, row in enumerate(texts, 2)]

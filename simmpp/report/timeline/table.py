@@ -27,6 +27,8 @@ SCHEMA = pa.schema(
         ("number", pa.int64()),  # the sender's send number; none if it never departed
         ("payload_bytes", pa.int64()),
         ("rays", pa.int32()),  # in the message; finished by a compute
+        ("objects", pa.int32()),  # in the message
+        ("requests", pa.int32()),  # in the message
         ("tests", pa.int64()),
         ("load", pa.int32()),  # of the PE at the end
         ("ready", pa.int32()),
