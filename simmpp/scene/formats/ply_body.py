@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from simmpp.scene.cut import Indices
 from simmpp.scene.formats.ply_header import Element, Header
-from simmpp.scene.formats.text import Source, decoded, floats, integers, line_of_word
+from simmpp.scene.formats.text import Source, decoded, floats, integers, line_of_word, shown
 
 Kind = np.dtype[Any]
 ROWS = {"vertex": "vertices", "face": "faces"}
@@ -172,10 +172,10 @@ def _walked(
                 size = body.count(at, count_kind) if at + count_width <= body.n else 0
                 at += count_width
             if size < 0:
-                problem = f"row {row + 1} of {element.name} has a list of {size} numbers"
+                problem = f"row {row + 1} of {shown(element.name)} has a list of {size} numbers"
                 raise source.error(problem, body.line(at))
             if at + size * width > body.n:
-                rows = ROWS.get(element.name, f"rows of {element.name}")
+                rows = ROWS.get(element.name, f"rows of {shown(element.name)}")
                 problem = f"the header says {element.n_rows} {rows}, {row} are there"
                 raise source.error(problem)
             starts.append(at)
