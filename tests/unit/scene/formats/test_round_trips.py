@@ -15,7 +15,7 @@ from simmpp.common.errors import SceneError
 from simmpp.scene import packed
 from simmpp.scene.formats.polygons import are_convex
 from simmpp.scene.mesh import load_mesh
-from simmpp.scene.nff import load_nff, write_nff
+from simmpp.scene.nff import load_nff, read_nff, write_nff
 from simmpp.scene.scene import Polygon
 from simmpp.scene.triangles import _dominant_plane, _is_convex, triangles
 
@@ -91,6 +91,15 @@ def test_a_bent_quad_keeps_both_halves(tmp_path: Path) -> None:
     bent = [(0, 0, 0), (0.35, 0.8, -0.11), (0.29, 0.52, -0.07), (0, -0.22, -0.24)]
     corners = corners_of(read(tmp_path, "a.obj", obj(bent, [range(4)])))
     np.testing.assert_array_equal(corners, np.array(bent)[[(0, 1, 2), (0, 2, 3)]])
+
+
+@KEEP
+@given(polygons(st.floats(-1e28, 1e28) | st.floats(-1e-5, 1e-5) | st.floats(1e6, 1e6 + 1)))
+def test_a_mesh_written_as_nff_is_the_same_triangles(tmp_path: Path, soup: Any) -> None:
+    scene = read(tmp_path, "a.obj", obj(*soup))
+    again = read_nff(write_nff(scene), name="a", where="a.nff")
+    np.testing.assert_array_equal(corners_of(again), corners_of(scene))
+    assert again.camera == scene.camera and again.lights == scene.lights
 
 
 # --- packed files ---
