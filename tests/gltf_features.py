@@ -54,12 +54,12 @@ def indices_of(kind: str) -> File:
 
 
 def interleaved() -> File:
-    """Positions and normals in turn, behind 8 bytes of something else."""
+    """Normals and positions in turn, behind 8 bytes of something else; the last ends the view."""
     file = File()
-    rows = np.hstack([np.array(SQUARE, "<f4"), np.full((4, 3), 9, "<f4")])
+    rows = np.hstack([np.full((4, 3), 9, "<f4"), np.array(SQUARE, "<f4")])
     view = file.view(b"12345678" + rows.tobytes(), byteStride=24)
-    where = {"bufferView": view, "byteOffset": 8}
-    accessor = file.add("accessors", **described(rows[:, :3], "f4", **where))
+    where = {"bufferView": view, "byteOffset": 8 + 12}
+    accessor = file.add("accessors", **described(rows[:, 3:], "f4", **where))
     indices = file.accessor(HALVES, "u2")
     file.node(mesh=file.mesh({"attributes": {"POSITION": accessor}, "indices": indices}))
     return file

@@ -17,7 +17,7 @@ from simmpp.scene.scene import Floats
 
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 UNSIGNED = (5121, 5123, 5125)
-MOST_ZEROS = 10_000_000
+MOST_ZEROS = 1_000_000
 """Elements of an accessor that no bytes of the file stand for."""
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
@@ -43,7 +43,7 @@ class Arrays:
     def indices(self, index: int) -> Indices:
         """An accessor of unsigned integers, (count,) int64."""
         accessor = self._accessor(index, ("SCALAR",))
-        if accessor.component_type not in UNSIGNED or accessor.normalized:
+        if accessor.component_type not in UNSIGNED:
             raise SceneError(f"accessors[{index}]: its indices are not unsigned integers")
         stored = self._values(accessor, f"accessors[{index}]").ravel()
         reserved = np.iinfo(stored.dtype).max

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from simmpp.scene.node import Node, placed
 from simmpp.scene.scene import Floats, Material
 
 TRIANGLES, STRIP = 4, 5
-MOST_TRIANGLES = 100_000_000
+MOST_OBJECTS, MOST_TRIANGLES = 1_000_000, 100_000_000
 """Of a scene: a small file can name one mesh often."""
 Weights = tuple[float, ...]
 
@@ -44,7 +44,7 @@ def nodes(data: bytes, file: Path) -> list[Node]:
     what is damaged or not read.
     """
     try:
-        text, chunk = split(data, binary=".glb" in file.name.lower())
+        text, chunk = split(data, binary=file.name.lower().removesuffix(".gz").endswith(".glb"))
         document = parsed(text)
         buffers = Buffers(document, chunk, file.parent)
         return list(_nodes(document, Arrays(document, buffers)))
@@ -53,11 +53,8 @@ def nodes(data: bytes, file: Path) -> list[Node]:
 
 
 def _nodes(document: Document, arrays: Arrays) -> Iterator[Node]:
-    @cache
-    def pieces(mesh: int, weights: Weights) -> list[_Piece]:
-        return list(_pieces(document, arrays, mesh, weights))
-
-    triangles = 0
+    pieces = cache(partial(_pieces, document, arrays))
+    objects = triangles = 0
     for at, world in worlds(document).items():
         node = document.nodes[at]
         if node.mesh is None:
@@ -66,23 +63,25 @@ def _nodes(document: Document, arrays: Arrays) -> Iterator[Node]:
             problem = "its mesh is bent by a skin, which is not read: save it in its pose"
             raise SceneError(f"nodes[{at}]: {problem}")
         mesh = item(document.meshes, node.mesh, "meshes")
-        weights = tuple(mesh.weights if node.weights is None else node.weights)
+        own = pieces(node.mesh, tuple(mesh.weights if node.weights is None else node.weights))
         matrices = copies(world, node, arrays)
-        own = pieces(node.mesh, weights)
+        objects += len(matrices) * len(own)
         triangles += len(matrices) * sum(len(piece.faces) for piece in own)
-        if triangles > MOST_TRIANGLES:
-            raise SceneError(f"its nodes place more than {MOST_TRIANGLES} triangles")
-        name = node.name or str(at)
+        if objects > MOST_OBJECTS or triangles > MOST_TRIANGLES:
+            most = f"{MOST_OBJECTS} primitives and {MOST_TRIANGLES} triangles"
+            raise SceneError(f"its nodes place more than {most}")
         for copy, matrix in enumerate(matrices):
             number = "" if node.extensions.instancing is None else f"[{copy}]"
             for piece in own:
                 vertices, faces = placed(piece.vertices, piece.faces, matrix)
-                yield Node(name + number + piece.suffix, vertices, faces, piece.material)
+                name = f"{node.name or at}{number}{piece.suffix}"
+                yield Node(name, vertices, faces, piece.material)
 
 
-def _pieces(document: Document, arrays: Arrays, mesh: int, weights: Weights) -> Iterator[_Piece]:
+def _pieces(document: Document, arrays: Arrays, mesh: int, weights: Weights) -> list[_Piece]:
     """The primitives of a mesh that have triangles."""
     primitives = document.meshes[mesh].primitives
+    pieces = []
     for i, primitive in enumerate(primitives):
         if primitive.mode < TRIANGLES:
             continue
@@ -90,8 +89,8 @@ def _pieces(document: Document, arrays: Arrays, mesh: int, weights: Weights) -> 
             piece = _piece(document, arrays, primitive, weights)
         except SceneError as error:
             raise SceneError(f"meshes[{mesh}].primitives[{i}]: {error.problem}") from None
-        if len(piece.faces):
-            yield piece._replace(suffix=f".{i}" if len(primitives) > 1 else "")
+        pieces.append(piece._replace(suffix=f".{i}" if len(primitives) > 1 else ""))
+    return [piece for piece in pieces if len(piece.faces)]
 
 
 def _piece(document: Document, arrays: Arrays, primitive: Primitive, weights: Weights) -> _Piece:

@@ -164,6 +164,11 @@ class SpecularGlossiness(_Part):
     glossiness_factor: float = 1.0
     specular_glossiness_texture: Any = None
 
+    @property
+    def is_textured(self) -> bool:
+        """Its factors alone don't say how it looks."""
+        return not (self.diffuse_texture is None and self.specular_glossiness_texture is None)
+
 
 class MaterialExtensions(_Part):
     """What a material's extensions say."""

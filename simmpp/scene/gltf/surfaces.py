@@ -36,11 +36,9 @@ def _of_surface(surface: Surface) -> Material:
     roughness = described.roughness_factor
     colour = Material().colour if base is None else _colour(np.array(base))
     specular = surface.extensions.specular
-    if specular is not None and specular.specular_glossiness_texture is None:
+    if specular is not None and not specular.is_textured:
         solved, metallic = _metallic(specular)
-        roughness = 1 - specular.glossiness_factor
-        if specular.diffuse_texture is None:
-            colour = _colour(solved)
+        colour, roughness = _colour(solved), 1 - specular.glossiness_factor
     if roughness is not None and metallic >= LEAST_METALLIC and roughness <= MOST_ROUGHNESS:
         return Material(colour, kd=MIRROR, ks=MIRROR)
     return Material(colour)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 
 import pytest
 from gltf_files import glb, one_square, refused
+
+from simmpp.scene.gltf.read import nodes
 
 WHOLE = one_square().glb()
 
@@ -25,6 +28,10 @@ def header(version: int = 2, length: int = len(WHOLE)) -> bytes:
         (header(length=12), "its first chunk is not its JSON"),
         (WHOLE[:16] + b"BIN\0" + WHOLE[20:], "its first chunk is not its JSON"),
         (header() + b"\xff\xff\xff\xff" + WHOLE[16:], "the chunk at byte 12 goes beyond the end"),
+        (
+            WHOLE[:12] + struct.pack("<I", len(WHOLE) - 12) + WHOLE[16:],
+            "the chunk at byte 12 goes beyond the end",
+        ),
         (header(length=15) + b"\0\0\0", "the chunk at byte 12 goes beyond the end"),
     ],
 )
@@ -46,6 +53,22 @@ def test_containers(data: bytes, problem: str) -> None:
 def test_text_that_is_not_json(text: bytes, problem: str) -> None:
     for data, file in ((text, "a.gltf"), (glb(text.ljust(4)), "a.glb")):
         assert f"its JSON: {problem}"[:40] in refused(data, file)
+
+
+def test_a_byte_order_mark_is_skipped() -> None:
+    assert nodes(b"\xef\xbb\xbf" + one_square().gltf(), Path("a.gltf"))
+
+
+def test_what_follows_the_end_is_not_looked_at() -> None:
+    assert nodes(WHOLE + b"more", Path("a.glb"))
+
+
+def test_only_the_first_buffer_is_in_the_container() -> None:
+    file = one_square()
+    file.json["buffers"] = [{"byteLength": 60}] * 2
+    for view in file.json["bufferViews"]:
+        view["buffer"] = 1
+    assert "buffers[1] has neither a uri nor a chunk of a GLB" in refused(file.glb())
 
 
 def test_json_of_another_kind() -> None:

@@ -97,6 +97,13 @@ def test_the_order_is_that_of_nodes_then_of_primitives() -> None:
     assert [node.vertices[0, 0] for node in found] == [*[3] * 3, *[1] * 3, *[2] * 3, *[3] * 3]
 
 
+def test_names_of_two_primitives() -> None:
+    file = File()
+    file.node(name="n", mesh=file.mesh(file.square(mode=0), file.square()))
+    (node,) = nodes(file.gltf(), Path("a.gltf"))
+    assert node.name == "n.1"
+
+
 def test_names_of_instances() -> None:
     found = nodes(instanced().gltf(), Path("a.gltf"))
     assert [node.name for node in found] == ["0[0]", "0[1]", "0[2]"]

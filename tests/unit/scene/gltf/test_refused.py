@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gltf_features import instanced as instanced_squares
 from gltf_files import SQUARE, File, one_square, refused
 
 from simmpp.scene.gltf import accessors, read
@@ -159,6 +160,19 @@ REFUSED: dict[str, tuple[Change, str]] = {
         ),
         "accessors[0]: 4503599627370496 elements without a bufferView, more than",
     ),
+    "a byte beyond the view": (entry("bufferViews", byteLength=47), "ends at byte 48 of its view,"),
+    "a byte beyond the buffer": (
+        entry("buffers", byteLength=59),
+        "bufferViews[1] ends at byte 60 of buffers[0], which has 59",
+    ),
+    "no number that JSON keeps": (
+        entry("accessors", count=2**53),
+        "accessors[0].count: value 9007199254740992: expected less than 9007199254740992",
+    ),
+    "characters of base64": (
+        entry("buffers", uri="data:;base64,AA*A"),
+        "buffers[0]: not base64: Only base64 data is allowed",
+    ),
     "stride": (entry("bufferViews", byteStride=8), "elements of 12 bytes, 8 bytes apart"),
     "no such view": (entry("accessors", bufferView=9), "bufferViews[9] is named, but there are 2"),
     "beyond the buffer": (
@@ -251,14 +265,17 @@ def test_a_hostile_file_takes_no_memory() -> None:
         tracemalloc.stop()
 
 
-def test_more_triangles_than_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(read, "MOST_TRIANGLES", 19)
+@pytest.mark.parametrize(("limit", "each"), [("MOST_TRIANGLES", 2), ("MOST_OBJECTS", 1)])
+def test_more_than_memory_holds(monkeypatch: pytest.MonkeyPatch, limit: str, each: int) -> None:
+    monkeypatch.setattr(read, limit, 9 * each)
     file = one_square()
     for _ in range(8):
         file.node(mesh=0)
     assert len(nodes(file.gltf(), Path("a.gltf"))) == 9
     file.node(mesh=0)
-    assert "its nodes place more than 19 triangles" in refused(file.gltf())
+    assert "its nodes place more than" in refused(file.gltf())
+    monkeypatch.setattr(read, limit, 3 * each - 1)
+    assert "its nodes place more than" in refused(instanced_squares().gltf())
 
 
 def test_zeros_that_no_bytes_stand_for(monkeypatch: pytest.MonkeyPatch) -> None:

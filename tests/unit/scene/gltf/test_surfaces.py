@@ -59,6 +59,7 @@ def test_materials(found: Material, expected: Material) -> None:
         ({"diffuseFactor": [0, 0, 0, 1], "specularFactor": [1, 0.8, 0.2]}, True),
         ({"diffuseFactor": [0.1, 0, 0, 1], "specularFactor": [0.5] * 3}, True),
         ({"specularFactor": [1, 1, 1], "glossinessFactor": 0.5}, False),
+        ({"diffuseFactor": [0.3, 0.1, 0.2, 1], "specularFactor": [0.3, 0.2, 0.1]}, False),
         ({}, True),
     ],
 )
@@ -76,3 +77,11 @@ def test_specular_surfaces_as_another_reader_converts_them(
     assert found.colour == pytest.approx(np.array(theirs.baseColorFactor)[:3] / 255, abs=1 / 254)
     mirror = theirs.metallicFactor >= 0.9 and theirs.roughnessFactor <= 0.3
     assert found.reflects == mirror == reflects
+
+
+@pytest.mark.parametrize("texture", ["diffuseTexture", "specularGlossinessTexture"])
+def test_a_textured_specular_surface_is_taken_by_what_stands_beside(texture: str) -> None:
+    specular = {"KHR_materials_pbrSpecularGlossiness": {texture: {"index": 0}}}
+    assert painted(extensions=specular) == Material()
+    beside = {"baseColorFactor": [1, 0, 0, 1]}
+    assert painted(extensions=specular, pbrMetallicRoughness=beside) == Material((1, 0, 0))
