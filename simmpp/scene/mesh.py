@@ -18,15 +18,22 @@ from simmpp.scene.boxes import scene_box
 from simmpp.scene.cut import Cut, compacted, cut_named, welded
 from simmpp.scene.formats import obj, off, ply, stl
 from simmpp.scene.framing import framing
-from simmpp.scene.gltf import read as gltf
 from simmpp.scene.nff_words import LARGEST
 from simmpp.scene.node import Node
 from simmpp.scene.packed import kind_of, read_whole
 from simmpp.scene.scene import SKY_BLUE, Material, MeshPart, Scene, Vector
 
+
+def _gltf(data: bytes, file: Path) -> list[Node]:
+    # Slow to import; other formats don't need it.
+    from simmpp.scene.gltf.read import nodes
+
+    return nodes(data, file)
+
+
 READERS = {
-    "glb": gltf.nodes,
-    "gltf": gltf.nodes,
+    "glb": _gltf,
+    "gltf": _gltf,
     "obj": obj.nodes,
     "off": off.nodes,
     "ply": ply.nodes,

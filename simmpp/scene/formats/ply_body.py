@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from simmpp.scene.cut import Indices
 from simmpp.scene.formats.ply_header import Element, Header
-from simmpp.scene.formats.text import Source, decoded, floats, integers, line_of_word, shown
+from simmpp.scene.formats.text import Source, decoded, floats, integers, shown
+from simmpp.scene.nff_words import line_of_word
 
 Kind = np.dtype[Any]
 ROWS = {"vertex": "vertices", "face": "faces"}

@@ -98,16 +98,3 @@ def _numbers(
             problem = f"expected {what}, got {shown(word)}"
             raise source.error(problem, line(index)) from None
     raise AssertionError("each word is a number, and all of them are not")
-
-
-def line_of_word(text: str, index: int) -> int:
-    """Line of the word of that index; the last line that has words if there is none."""
-    n_words, last = 0, 1
-    for number, line in enumerate(text.split("\n"), start=1):
-        words = line.split()
-        if words:
-            last = number
-        n_words += len(words)
-        if index < n_words:
-            return number
-    return last
