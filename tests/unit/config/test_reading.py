@@ -409,7 +409,7 @@ def test_defaults_of_a_reading_are_told() -> None:
     assert default("placement.owners", "bisection") == "bisection"
     assert default("policy.ask_at_least", 32) == "32, 64 for concurrent (reading mixed)"
     assert default("policy.packing", "none") == "none, all for concurrent (reading mixed)"
-    assert default("machine.ray") == "0.5 us (t3e) (reading mixed)"
+    assert default("machine.ray") == "0.5 us (t3e, reading mixed)"
     assert default("machine.send_startup") == "10 us (t3e)"
     assert default("machine.latency") == "2 us (t3e)"
     assert default("memory.bytes") == "none"
