@@ -15,7 +15,7 @@ from calls import begin_in, simmpp
 from simmpp.commands.options import window_of
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.common.units import format_ps
-from simmpp.methods.columns import COLUMNS
+from simmpp.methods.columns import result_columns
 
 CONFIG = """
 scene: tetra:2
@@ -92,7 +92,7 @@ def test_run_writes_rows_and_record() -> None:
     assert simmpp("run", "c.yaml", "--out", "a/b").exit_code == 0
     with open("a/b/results.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == COLUMNS
+    assert tuple(rows[0]) == result_columns(packs=True)
     assert [row["policy"] for row in rows if row["scene"] == "tetra:2"] == [
         "concurrent", "object", "ray", "replicated",
     ]  # fmt: skip
