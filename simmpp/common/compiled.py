@@ -22,6 +22,8 @@ from filelock import FileLock
 from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
+from simmpp.common.interrupts import Uninterrupted
+
 Function = TypeVar("Function", bound=Callable[..., object])
 
 PACKAGE = __name__.partition(".")[0]
@@ -34,6 +36,19 @@ class _Compiled(CPUDispatcher):  # type: ignore[misc]
     Left alone, numba would compile a function, and all that it calls, again for the int32 of a
     record's field and for a number written at the call.
     """
+
+    def __call__(self, *args: Any, **kws: Any) -> Any:
+        """Compile if need be, and run; an interrupt waits, for numba would lose it or half a code.
+
+        While it compiles numba calls back Python from LLVM, which knows no exceptions.
+        """
+        with Uninterrupted():
+            return super().__call__(*args, **kws)
+
+    def compile(self, sig: Any) -> Any:
+        """Compile; likewise."""
+        with Uninterrupted():
+            return super().compile(sig)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """What numba asks for a call from compiled code."""
@@ -89,7 +104,7 @@ def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 
     def compile_now(function: Callable[..., object]) -> object:
-        with _kept_for(function) as kept:
+        with _kept_for(function) as kept, Uninterrupted():
             return numba.cfunc(signature, cache=kept)(function)
 
     return compile_now
