@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from simmpp.engine.simulate import simulate
     from simmpp.machine.presets import machine as make_machine
     from simmpp.placement.place import place
-    from simmpp.placement.placement import Memory, PlacementRules
+    from simmpp.placement.placement import Cells, Memory, PlacementRules
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.run.profit import profits
     from simmpp.studies.curve.estimate import estimate
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from simmpp.workload.trace.tracer import trace
 
 _HOME = {
+    "Cells": "simmpp.placement.placement:Cells",
     "Memory": "simmpp.placement.placement:Memory",
     "Picture": "simmpp.workload.picture:Picture",
     "PlacementRules": "simmpp.placement.placement:PlacementRules",
@@ -50,6 +51,7 @@ _HOME = {
 }
 
 __all__ = [
+    "Cells",
     "Memory",
     "Picture",
     "PlacementRules",

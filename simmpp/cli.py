@@ -24,6 +24,7 @@ COMMANDS = {
     "scene": "List the objects and materials of a scene.",
     "workload": "List the rays of a picture, and which objects they need.",
     "machine": "Print every constant of a machine with its source.",
+    "reading": "Print all that a reading sets with its source.",
     "keys": "Print what can be set in a configuration, or all about one KEY.",
 }
 """The commands in the order of work, with the first line of their help.

@@ -231,6 +231,12 @@ def random_policy(rng: np.random.Generator) -> PolicyParameters:
     )
 
 
+SHARING = PolicyParameters(
+    "concurrent", min_load=0, batch=3, ask_at_least=1, merge_requests=False, packing="all"
+)
+"""What often lets rays and requests ride together."""
+
+
 def random_case(seed: int) -> Case:
     """The case of a seed: the same on every machine."""
     rng = np.random.default_rng(seed)

@@ -34,7 +34,7 @@ def result_of(engine: str, case: Case) -> Result:
         case.policy,
         engine=engine,
         ready_order=case.ready_order,
-        record=Recording(log=True, tests=True),
+        record=Recording(log=True, tests=True, hops=True),
     )
 
 
@@ -72,6 +72,7 @@ def outcome_of(result: Result) -> Outcome:
         activities=activities_of(slices),
         slices=slices,
         tested=list(zip(tested_rays, tested_objects, strict=True)),
+        ray_hops=[] if result.ray_hops is None else result.ray_hops.tolist(),
     )
 
 

@@ -15,11 +15,10 @@ import sys
 from contextlib import closing
 from pathlib import Path
 
-from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice, overrides_of
+from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice
 from table import draw
 
 from simmpp.common.files import write_csv
-from simmpp.config.config import Config
 from simmpp.run.provenance import result_versions
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
@@ -46,11 +45,7 @@ Row = dict[str, str | int]
 def plans_of(choice: Choice) -> dict[str, Plan]:
     """What has to be simulated for each figure."""
     size = [f"picture.resolution={choice.resolution}", f"seeds={SEEDS}"]
-    return {name: plan_of(_config(name, choice, size)) for name in FIGURES}
-
-
-def _config(figure: str, choice: Choice, size: list[str]) -> Config:
-    return load_experiment(figure, [*size, *overrides_of(choice, load_experiment(figure))])
+    return {name: plan_of(load_experiment(name, [*size, *choice.sets])) for name in FIGURES}
 
 
 def verdicts(plans: dict[str, Plan], outcomes: dict[str, Outcome]) -> list[Verdict]:

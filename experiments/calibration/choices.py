@@ -7,16 +7,9 @@ next to nothing (../sensitivity), are left out. Several at once combine what hel
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from fractions import Fraction
 
-from simmpp.config.config import Config
-from simmpp.placement.residents import resident_count
-from simmpp.workload.sources import load_scene
-
-AS_X = "memory.transient=as many as x"
-"""Not a key: the transient memory of each point holds x N objects."""
+AS_X = "memory.transient=x"
 
 
 @dataclass(frozen=True)
@@ -110,21 +103,3 @@ SEVERAL = _one(
 """Combinations of choices that, alone, make some claim hold or come near to it."""
 FULL = [Choice(f"{BEST}, at 512 x 512", "full", tuple(BEST.split("; ")), resolution=512)]
 """The set for which most claims hold, at full resolution."""
-
-
-def overrides_of(choice: Choice, figure: Config) -> list[str]:
-    """What to set in the configuration of a figure."""
-    plain = [each for each in choice.sets if each != AS_X]
-    return [*plain, _kept_as_x(figure)] if AS_X in choice.sets else plain
-
-
-def _kept_as_x(figure: Config) -> str:
-    """The figure's sweep with a transient memory for x N objects at each x."""
-    sweep = dict(figure.settings.sweep)
-    scenes = sweep.pop("scene", [f"{figure.settings.scene.spd}:{figure.settings.scene.size}"])
-    fractions = [Fraction(str(x)) for x in sweep.pop("memory.fraction")]
-    sizes = {str(scene): len(load_scene(str(scene)).objects) for scene in scenes}
-    sweep["scene, memory.fraction, memory.transient"] = [
-        [scene, str(x), resident_count(x, n)] for scene, n in sizes.items() for x in fractions
-    ]
-    return f"sweep={json.dumps(sweep)}"

@@ -59,5 +59,4 @@ def short(name: str) -> str:
     """A choice without the sections of its keys, and the longest of them in fewer words."""
     name = re.sub(r"\b(machine|memory|picture|placement|policy)\.", "", name)
     name = re.sub(r"send_startup=(\d+) us; receive_startup=(\d+) us", r"startups \1 + \2 us", name)
-    name = name.replace("transient=as many as x", "transient=x")
     return name.replace("merge_requests=false; load_info=none", "unmerged, no load_info")

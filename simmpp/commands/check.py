@@ -107,7 +107,7 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
     moved = moves(baseline, now, config.settings.check.tolerances)
     rows = f"{len(now.results)} rows, {len(now.profits)} points"
     if moved:
-        _print(moved, reasons(baseline, now))
+        _print(moved, reasons(config, baseline, now))
     if out:
         _write(moved, baseline, now, obtained, out)
     click.echo(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")
@@ -128,7 +128,7 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
     else:
         moved = moves(old, now, {})
         if moved:
-            _print(moved, reasons(old, now))
+            _print(moved, reasons(config, old, now))
         click.echo(f"check: {len(moved) or 'no'} values of the baseline moved")
     write_baseline(obtained, target)
     click.echo(f"check: baseline of {len(now.results)} rows in {target}")

@@ -11,6 +11,7 @@ import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands import options
+from simmpp.commands.reading import print_reading
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
@@ -110,6 +111,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
     output().print(summary(point, runs))
+    print_reading(config)
     if verify:
         _verify(point, runs)
 

@@ -57,6 +57,7 @@ def sweep_command(
         start_server()
     # Not at the top: the server of the workers and this process load numba and the rest at once.
     from simmpp.commands.progress import progress_of_sweep
+    from simmpp.commands.reading import print_readings_of_sweep
     from simmpp.commands.sweep_result import print_result
     from simmpp.commands.terminal import announce_compilation
     from simmpp.config.config import load_config
@@ -75,4 +76,6 @@ def sweep_command(
             out=out,
             watcher=watcher,
         )
-    sys.exit(print_result(result, config.settings, out))
+    code = print_result(result, config.settings, out)
+    print_readings_of_sweep(config)
+    sys.exit(code)

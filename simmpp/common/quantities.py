@@ -30,6 +30,8 @@ TIME = {"anyOf": [_text(_SECONDS), {"const": 0}]}
 SIZE = {"anyOf": [_text(_BYTES), {"const": 0}]}
 BANDWIDTH = {"anyOf": [_text(f"{_BYTES}/{_SECONDS}"), {"const": "unlimited"}]}
 SHARE_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})?")
+SHARE_OF_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})")
+"""A share that can't be taken for a number."""
 SHARE = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, SHARE_TEXT]}
 
 

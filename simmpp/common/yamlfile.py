@@ -46,16 +46,23 @@ def read_yaml(path: Path) -> Document:
 
     Raises ConfigError, one line, if the file can't be read or isn't plain YAML.
     """
+    return parse_yaml(yaml_text(path), str(path))
+
+
+def yaml_text(path: Path) -> str:
+    """The text of a YAML file.
+
+    Raises ConfigError, one line, if the file can't be read.
+    """
     try:
         refuse_special(path)
         with open(path, encoding="utf-8") as file:
-            text = file.read(MOST_CHARACTERS + 1)
+            return file.read(MOST_CHARACTERS + 1)
     except UnicodeDecodeError:
         raise ConfigError("expected UTF-8 text", where=str(path)) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise ConfigError(f"can't read the file: {reason}", where=str(path)) from None
-    return parse_yaml(text, str(path))
 
 
 def parse_yaml(text: str, where: str = "") -> Document:

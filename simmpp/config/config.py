@@ -12,12 +12,14 @@ from pydantic_core import to_jsonable_python
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place, misplaced
-from simmpp.common.strict import structure
+from simmpp.common.strict import is_line, structure
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
+from simmpp.config.defaults import READING, filled, lines_used
 from simmpp.config.overrides import Places, override, set_key
-from simmpp.config.settings import Settings
+from simmpp.config.reading import Line, Reading, load_reading
+from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine, torus_shape
 from simmpp.placement.placement import Memory
@@ -43,6 +45,8 @@ class Config:
     settings: Settings
     folder: Path
     """Where relative scene files are looked for."""
+    reading: Reading = field(repr=False, compare=False)
+    """What stands for what the configuration does not say."""
     source: Source | None = field(default=None, repr=False, compare=False)
     """Kept where points of a sweep are still to be made of it."""
 
@@ -88,7 +92,14 @@ class Config:
 
         Raises ConfigError if the shape that the configuration gives has another number.
         """
-        return machine(self.settings.machine.preset, self.settings.machine, processors)
+        own = self.settings.machine
+        costs = self.reading.costs.get(own.preset)
+        return machine(own.preset, own, processors, costs=costs)
+
+    @property
+    def lines_of_reading(self) -> list[Line]:
+        """What the reading sets here, of a configuration that keeps its source."""
+        return lines_used(self.kept_source.data, self.settings.machine, self.reading)
 
     @property
     def memory(self) -> Memory:
@@ -114,10 +125,12 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     return _checked(document.data, places, Path(path).parent, overrides)
 
 
-def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] = ()) -> Config:
+def config_from_mapping(
+    mapping: Mapping[str, object], overrides: Sequence[str] = (), folder: Path = Path()
+) -> Config:
     """Check a configuration given as Python data with the keys of the YAML file.
 
-    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+    ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them; files are looked for from ``folder``.
 
     Raises ConfigError, one line with key, value and what was expected.
     """
@@ -125,7 +138,7 @@ def config_from_mapping(mapping: Mapping[str, object], overrides: Sequence[str] 
         raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
     data = copy.deepcopy(dict(mapping))
     places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
-    return _checked(data, places, Path(), overrides)
+    return _checked(data, places, folder, overrides)
 
 
 def with_key(config: Config, key: str, value: object) -> Config:
@@ -184,8 +197,22 @@ def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) 
 
 
 def _structured(data: dict[str, Any], places: Places, folder: Path) -> Config:
-    settings = structure(Settings, data, places)
-    return Config(settings, _scene_folder(places, folder), Source(data, places, folder))
+    reading = _reading_of(data, places, folder)
+    settings = structure(Settings, filled(data, reading), places)
+    scenes = _folder_of([("scene", key) for key in FILES], places, folder)
+    return Config(settings, scenes, reading, Source(data, places, folder))
+
+
+def _reading_of(data: Mapping[str, Any], places: Places, folder: Path) -> Reading:
+    name = data.get(READING, DEFAULT_READING)
+    if not is_line(name):  # which the settings say in their words
+        return load_reading(DEFAULT_READING)
+    try:
+        return load_reading(name, _folder_of([(READING,)], places, folder))
+    except ConfigError as error:
+        if error.where:
+            raise
+        raise misplaced((READING,), error.problem, places) from None
 
 
 def _nearest(places: Places, path: KeyPath) -> Place:
@@ -193,10 +220,10 @@ def _nearest(places: Places, path: KeyPath) -> Place:
     return next((places[written] for written in known if written in places), ("", None))
 
 
-def _scene_folder(places: Places, folder: Path) -> Path:
+def _folder_of(paths: Iterable[KeyPath], places: Places, folder: Path) -> Path:
     """Files named in a configuration lie beside it; those named by --set, here."""
-    settings = [_nearest(places, ("scene", key))[0] for key in FILES]
-    return Path() if any(where.startswith("--set ") for where in settings) else folder
+    wheres = [_nearest(places, path)[0] for path in paths]
+    return Path() if any(where.startswith("--set ") for where in wheres) else folder
 
 
 def described(config: Config) -> dict[str, Any]:

@@ -20,8 +20,10 @@ from simmpp.common.strict import (
     Switch,
     in_words,
     integer,
+    is_line,
     mistake,
     one_of,
+    only,
     parsed_by,
 )
 from simmpp.common.units import share, shown
@@ -80,6 +82,10 @@ def _axes(value: object) -> object:
     return value
 
 
+DEFAULT_READING = "plain"
+"""What holds where a configuration names none."""
+_READING = "a reading of the package such as plain, or a file such as readings/own.yaml"
+ReadingName = Annotated[str, *only(is_line, Expect(_READING, {"type": "string", "minLength": 1}))]
 Tolerance = Annotated[Fraction | None, parsed_by(_tolerance), Expect(_TOLERANCE, _SHARE)]
 
 
@@ -129,6 +135,9 @@ class Settings(Strict):
 
     scene: Annotated[SceneKey, _SCENE]
     """What is rendered."""
+    reading: ReadingName = DEFAULT_READING
+    """Defaults of policies, placement, memory and costs together, each with its source: what one
+    takes the paper to mean (see `simmpp reading NAME`)."""
     picture: Picture = Picture()
     """Rays that are traced."""
     machine: MachineSettings = MachineSettings()

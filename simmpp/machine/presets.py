@@ -9,7 +9,8 @@ from importlib.resources import as_file, files
 from math import prod
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import KeyPath, Place, misplaced
+from simmpp.common.places import KeyPath, Place
+from simmpp.common.sourced import Cited, values_of
 from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.validate import require_whole
@@ -41,10 +42,14 @@ class Preset:
         return self.texts.get(key) or (write(numbers[key]) if key in numbers else "")
 
     def source(self, key: str) -> str:
-        """Of a constant: ``pack.fixed`` in the file says what ``pack.rays.fixed`` is, too."""
+        """Of a constant."""
+        return self.sources[self.written(key)]
+
+    def written(self, key: str) -> str:
+        """The file's key of a constant: ``pack.fixed`` there says what ``pack.rays.fixed`` is."""
         first, _, last = key.partition(".")
         candidates = (key, f"{first}.{last.rpartition('.')[2]}", first)
-        return next(self.sources[cited] for cited in candidates if cited in self.sources)
+        return next(cited for cited in candidates if cited in self.sources)
 
 
 def preset_names() -> list[str]:
@@ -76,32 +81,10 @@ def _preset(name: str, document: Document) -> Preset:
     data = document.data
     if not isinstance(data, dict) or set(data) != {"description", "constants"}:
         raise ConfigError("expected the keys description, constants", where=document.where)
-    texts: dict[str, str] = {}
-    sources: dict[str, str] = {}
-    values = _values(data["constants"], (), texts, sources, places)
-    constants = structure(Constants, values, places)
-    return Preset(name, " ".join(str(data["description"]).split()), constants, texts, sources)
-
-
-def _values(
-    node: object,
-    path: KeyPath,
-    texts: dict[str, str],
-    sources: dict[str, str],
-    places: Mapping[KeyPath, Place],
-) -> object:
-    """``{value, source}`` leaves reduced to their values; the rest goes into texts and sources."""
-    match node:
-        case {"value": value, "source": str(source), **others} if source.strip() and not others:
-            key = ".".join(map(str, path))
-            texts[key], sources[key] = str(value), " ".join(source.split())
-            return value
-        case dict() if "value" not in node:
-            return {
-                key: _values(child, (*path, key), texts, sources, places)
-                for key, child in node.items()
-            }
-    raise misplaced(path, "expected {value: ..., source: ...}", places)
+    cited = Cited()
+    constants = structure(Constants, values_of(data["constants"], cited, places), places)
+    description = " ".join(str(data["description"]).split())
+    return Preset(name, description, constants, cited.texts, cited.sources)
 
 
 def machine(
@@ -109,20 +92,26 @@ def machine(
     overrides: Mapping[str, object] | Constants | None = None,
     processors: int = 64,
     shape: Shape | None = None,
+    costs: Preset | None = None,
 ) -> Machine:
     """A preset's machine of ``processors`` PEs, with some constants overridden.
 
-    ``overrides`` has the keys of a configuration's ``machine``: ``{"send_startup": "5 us"}``. The
-    torus is ``shape``, else the overrides' shape, else the most cubic one.
+    ``overrides`` has the keys of a configuration's ``machine``: ``{"send_startup": "5 us"}``;
+    ``costs`` are some constants that come before them, with sources of their own. The torus is
+    ``shape``, else the overrides' shape, else the most cubic one.
     Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
     """
     if not isinstance(overrides, Constants):
         overrides = structure(Constants, dict(overrides or {}), {})
     chosen = load_preset(preset)
     changed = overrides.flat()
-    sources = {key: chosen.source(key) for key in chosen.constants.flat()}
+    numbers: dict[str, int] = {}
+    sources: dict[str, str] = {}
+    for layer in (chosen, costs) if costs else (chosen,):
+        numbers |= layer.constants.flat()
+        sources |= {key: layer.source(key) for key in layer.constants.flat()}
     return machine_of(
-        chosen.constants.flat() | changed,
+        numbers | changed,
         name=preset,
         shape=torus_shape(processors, shape or overrides.shape),
         **overrides.words(),

@@ -6,28 +6,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.randomness import generator
-from simmpp.placement.placement import Pixels, cut
+from simmpp.placement.placement import Cells, Pixels, cut
 
 
 def pixel_pes(
-    rule: Pixels, picture: tuple[int, int], processors: int, seed: int
+    rule: Pixels | Cells, picture: tuple[int, int], processors: int, seed: int
 ) -> NDArray[np.int32]:
     """The PE of each pixel, row by row: (rows * columns,) int32.
 
     ``blocks`` cuts the pixels in their order at floor(i n / nb), ``tiles`` cuts the picture into
-    a x b = nb rectangles nearest its aspect, ``interleaved`` deals pixels out in turn, ``random``
-    deals out the blocks of a seeded permutation.
+    a x b = nb rectangles nearest its aspect, ``random`` deals out the blocks of a seeded
+    permutation. In turn, the first to PE 0, are dealt the pixels (``interleaved``), the rows of the
+    picture (``rows``), or the squares of Cells, row by row, cut off at the right and lower edge.
     """
     rows, columns = picture
     n = rows * columns
+    if isinstance(rule, Cells):
+        return _in_turn(rows, columns, (rule.cells, rule.cells), processors)
     if rule == "interleaved":
-        return (np.arange(n) % processors).astype(np.int32)
+        return _in_turn(rows, columns, (1, 1), processors)
+    if rule == "rows":
+        return _in_turn(rows, columns, (1, columns), processors)
     if rule == "tiles":
         return _tiles(rows, columns, processors)
     dealt = np.empty(n, np.int32)
     order = generator(seed, "pixels").permutation(n) if rule == "random" else np.arange(n)
     dealt[order] = cut(n, processors)
     return dealt
+
+
+def _in_turn(rows: int, columns: int, cell: tuple[int, int], processors: int) -> NDArray[np.int32]:
+    """PE = number of the cell, row by row, mod nb; ``cell`` is its rows and columns."""
+    height, width = cell
+    across = -(-columns // width)
+    number = np.arange(rows)[:, None] // height * across + np.arange(columns) // width
+    return (number % processors).astype(np.int32).reshape(-1)
 
 
 def _tiles(rows: int, columns: int, processors: int) -> NDArray[np.int32]:

@@ -12,7 +12,7 @@ from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_whole
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.residents import Ids, as_csr, replicas, resident_count
+from simmpp.placement.residents import Ids, as_csr, kept_count, replicas, resident_count
 from simmpp.workload.workload import Workload
 
 
@@ -32,7 +32,7 @@ def place(
         owners=owner_of,
         replica_offsets=offsets,
         replica_objects=objects,
-        transient=memory.transient,
+        transient=kept_count(memory, workload.n_objects, len(objects), processors),
         pixel_pes=pixel_pes(rules.pixels, workload.picture, processors, seed),
     )
 

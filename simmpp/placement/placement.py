@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import (
+    PlainSerializer,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
-from simmpp.common.quantities import Share, Size
-from simmpp.common.strict import declared, integer, mistake
-from simmpp.common.validate import MOST_COUNT
+from simmpp.common.errors import ConfigError
+from simmpp.common.quantities import SHARE_OF_TEXT, Share, Size
+from simmpp.common.strict import Expect, declared, mistake, parsed_by
+from simmpp.common.units import share, shown
+from simmpp.common.validate import MOST_COUNT, require_whole, whole
 
 # --- cutting a row of things into near-equal parts ---
 
@@ -25,7 +32,72 @@ def cut(n: int, parts: int) -> NDArray[np.int32]:
 
 Owners = Literal["bisection", "morton", "round_robin", "random"]
 Residents = Literal["random", "nearest", "hot"]
-Pixels = Literal["blocks", "tiles", "interleaved", "random"]
+Pixels = Literal["blocks", "rows", "tiles", "interleaved", "random"]
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Pixels in squares, of that many along each side, which are dealt out in turn."""
+
+    cells: int
+
+    def __post_init__(self) -> None:
+        require_whole("cells", self.cells, 1, MOST_COUNT)
+
+
+# --- what users write for pixels and for transient memory ---
+
+_PIXELS = f"{', '.join(get_args(Pixels))} or {{cells: 8}}"
+_CELLS_SCHEMA = {
+    "type": "object",
+    "properties": {"cells": {"type": "integer", "minimum": 1, "maximum": MOST_COUNT}},
+    "required": ["cells"],
+    "additionalProperties": False,
+}
+_PIXELS_SCHEMA = {"anyOf": [{"enum": list(get_args(Pixels))}, _CELLS_SCHEMA]}
+AS_FRACTION: Literal["x"] = "x"
+"""As many objects as are resident."""
+_TRANSIENT = "a number of objects, a share of them such as 10% (100% at most), or x"
+_COUNT = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
+_TRANSIENT_SCHEMA = {"anyOf": [_COUNT, SHARE_OF_TEXT, {"const": AS_FRACTION}]}
+
+
+def _pixels(value: object) -> object:
+    """One of the words, or ``{cells: 8}``."""
+    if isinstance(value, dict) and set(value) == {"cells"}:
+        return Cells(value["cells"])
+    if isinstance(value, Cells) or (isinstance(value, str) and value in get_args(Pixels)):
+        return value
+    raise ConfigError(f"value {shown(value)}: expected {_PIXELS}")
+
+
+def _transient(value: object) -> Fraction | int | str:
+    """A share (a Fraction, or a text with % or /), a number of objects, or ``x``.
+
+    1 is one object, and 0.1 nothing: what has neither % nor / is no share.
+    """
+    if isinstance(value, str) and value == AS_FRACTION:
+        return AS_FRACTION
+    try:
+        if isinstance(value, Fraction) or (isinstance(value, str) and set("%/") & set(value)):
+            return share(value)
+        return whole(value, 0, MOST_COUNT)
+    except ConfigError:
+        raise ConfigError(f"value {shown(value)}: expected {_TRANSIENT}") from None
+
+
+def _transient_text(value: Fraction | int | str) -> int | str:
+    """As it would be written; 1/1 is everything, 1 one object."""
+    return f"{value.numerator}/{value.denominator}" if isinstance(value, Fraction) else value
+
+
+PixelRule = Annotated[Pixels | Cells, parsed_by(_pixels), Expect(_PIXELS, _PIXELS_SCHEMA)]
+Transient = Annotated[
+    Fraction | int | Literal["x"],
+    parsed_by(_transient),
+    Expect(_TRANSIENT, _TRANSIENT_SCHEMA, "objects or %"),
+    PlainSerializer(_transient_text),
+]
 
 
 @declared
@@ -38,8 +110,16 @@ class Memory:
     """The other way to say it: room for resident objects, in place of the fraction."""
     residents: Residents = "random"
     """Which objects are resident besides a PE's own."""
-    transient: Annotated[int, *integer(0, MOST_COUNT, "objects")] = 0
-    """Fetched objects kept besides the resident ones (least recently used leaves)."""
+    transient: Transient = 0
+    """Fetched objects kept besides the resident ones (least recently used leaves): a number; a
+    share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
+    are resident in the mean). The replicated scene fetches none."""
+
+    @property
+    def kept(self) -> Fraction | int | Literal["x"]:
+        """The transient share or number of objects; ``x`` only where no fraction says which."""
+        by_fraction = self.transient == AS_FRACTION and self.bytes is None
+        return self.fraction if by_fraction else self.transient
 
     @model_validator(mode="before")
     @classmethod
@@ -63,8 +143,9 @@ class PlacementRules:
 
     owners: Owners = "bisection"
     """How objects are dealt to their owners."""
-    pixels: Pixels = "blocks"
-    """How pixels are dealt to the PEs that start them."""
+    pixels: PixelRule = "blocks"
+    """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
+    squares of so many pixels along each side (cells)."""
 
 
 @dataclass(frozen=True, eq=False)

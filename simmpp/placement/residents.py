@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.randomness import generator
+from simmpp.common.units import half_up
 from simmpp.placement.placement import Memory, Residents
 from simmpp.workload.workload import Workload
 
@@ -51,7 +52,20 @@ def as_csr(held: Sequence[Ids]) -> tuple[NDArray[np.int64], Ids]:
 
 def resident_count(fraction: Fraction, n_objects: int) -> int:
     """floor(x N + 1/2), exactly."""
-    return int(fraction * n_objects + Fraction(1, 2))
+    return half_up(fraction * n_objects)
+
+
+def kept_count(memory: Memory, n_objects: int, n_replicas: int, processors: int) -> int:
+    """Fetched objects that a PE keeps: a share of all is rounded as the fraction's.
+
+    ``n_replicas`` are those of all PEs together.
+    """
+    kept = memory.kept
+    if isinstance(kept, int):
+        return kept
+    if isinstance(kept, Fraction):
+        return resident_count(kept, n_objects)
+    return half_up(Fraction(n_objects + n_replicas, processors))  # residents of a PE, in the mean
 
 
 def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> Ids:

@@ -50,6 +50,8 @@ POLICIES: dict[str, DataflowPolicy] = {
 }
 REFERENCE, CEILING = "object", "replicated"
 """Run with every point: what profits are measured against, and no dataflow at all."""
+CLASSICAL = ("object", "ray")
+"""The dataflows that the paper joins; the faster of them is what a further one has to beat."""
 DEFAULT_POLICY = "concurrent"
 """What a configuration that names none compares with object dataflow."""
 

@@ -81,7 +81,7 @@ def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:
     names = [parameters.name for parameters in named]
     chosen = [(parameters, True) for parameters in named]
     others = [name for name in (REFERENCE, CEILING) if name not in names]
-    chosen += [(PolicyParameters(name), False) for name in others]
+    chosen += [(config.reading.policy(name), False) for name in others]
     return sorted(chosen, key=lambda pair: pair[0].name != REFERENCE)
 
 

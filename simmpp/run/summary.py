@@ -12,6 +12,7 @@ from rich.text import Text
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
+from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 
@@ -116,8 +117,23 @@ def imbalance(run: PolicyRun) -> float:
     return float(busy.max() / busy.mean()) if busy.any() else 1.0
 
 
+def _best_classical(runs: Sequence[PolicyRun]) -> str:
+    """The faster classical dataflow with the same memory, and how long the other dataflows take."""
+    classical = [run for run in runs if run.parameters.name in CLASSICAL]
+    best = min(classical, key=lambda run: run.result.makespan_ps)
+    best_ps = best.result.makespan_ps
+    times = {
+        run.parameters.title: _times(ratio(run.result.makespan_ps, best_ps))
+        for run in runs
+        if run is not best and not run.all_resident
+    }
+    named = f"best classical dataflow: {best.parameters.title}, {format_ps(best_ps)}"
+    return "; ".join([named, *(f"{title} takes {n} times as long" for title, n in times.items())])
+
+
 def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
-    notes = [f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"]
+    bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
+    notes = [bound, _best_classical(runs)]
     notes += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

@@ -36,7 +36,7 @@ class Comparison:
     @property
     def with_reference(self) -> list[PolicyParameters]:
         """What profits are measured against comes first, named or not."""
-        reference = self.policies.get(REFERENCE, PolicyParameters(REFERENCE))
+        reference = self.policies.get(REFERENCE, self.config.reading.policy(REFERENCE))
         return [reference, *(p for title, p in self.policies.items() if title != REFERENCE)]
 
     def points(self, seeds: Iterable[int]) -> list[GridPoint]:

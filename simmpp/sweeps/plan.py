@@ -16,6 +16,7 @@ from simmpp.common.files import Row
 from simmpp.common.places import misplaced
 from simmpp.config.axes import SAME, keys_of
 from simmpp.config.config import Config, Source
+from simmpp.config.defaults import READING
 from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
@@ -72,11 +73,12 @@ class Plan:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What must be equal for results to be continued."""
+        """What must be equal for results to be continued; a reading counts by what it gives."""
+        settings = {key: said for key, said in recorded(self.config).items() if key != READING}
         keys = "".join(sorted({planned.task.key for planned in self.points}))
         return {
             "versions": result_versions(),
-            "config": recorded(self.config),
+            "config": settings,
             "workloads": self.workloads,
             "points": hashlib.sha256(keys.encode()).hexdigest(),
         }

@@ -48,7 +48,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     seed = point.seed if is_drawn else 0
     constants = asdict(replace(config.machine_for(config.processors), sources={}))
     machine = {name: value for name, value in constants.items() if name not in ("name", "sources")}
-    held = {} if everywhere else asdict(memory)  # {}: unlike any fraction's
+    # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
+    held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(
         key=_hash(place, asdict(policy), settings.ready_order, settings.method, settings.engine),

@@ -13,6 +13,7 @@ import pytest
 from calls import begin_in, refused, simmpp
 from click.testing import Result
 
+from simmpp.config.settings import DEFAULT_READING
 from simmpp.machine import presets
 from simmpp.policy.parameters import POLICIES
 from simmpp.policy.view import View
@@ -288,3 +289,69 @@ def test_what_the_repository_checks_is_what_it_has() -> None:
     ]  # fmt: skip
     shutil.copytree(COMMITTED, "b")
     assert baseline.read_sweep(Path("b")).results
+
+
+# --- a default reading that changed ---
+
+
+def other_default(monkeypatch: pytest.MonkeyPatch) -> tuple[str, str]:
+    """Make the other reading of the package the default; its name, and that of the default."""
+    (other,) = {"plain", "mixed"} - {DEFAULT_READING}
+    monkeypatch.setattr("simmpp.config.config.DEFAULT_READING", other)
+    return other, DEFAULT_READING
+
+
+def test_a_baseline_of_other_defaults_is_compared_and_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    check("--update")
+    new, old = other_default(monkeypatch)
+    done = check()
+    assert done.exit_code == 1
+    line = (
+        f"the defaults changed: the baseline is of reading {old}, the default is {new} now; "
+        f"`reading: {old}` in the configuration is the old one"
+    )
+    assert line in done.stdout.splitlines()
+    Path("c.yaml").write_text(CONFIG + f"reading: {old}\n")
+    done = check()
+    assert done.exit_code == 0
+    assert done.stdout.endswith("nothing moved\n")
+
+
+def test_a_baseline_that_names_no_reading_is_of_plain(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("c.yaml").write_text(CONFIG + "reading: plain\n")
+    check("--update")
+    record = json.loads(Path("b/run.json").read_text())
+    del record["config"]["reading"], record["config"]["policy"][0]["packing"]
+    Path("b/run.json").write_text(json.dumps(record))
+    assert check().exit_code == 0
+    monkeypatch.setattr("simmpp.config.config.DEFAULT_READING", "mixed")
+    Path("c.yaml").write_text(CONFIG)
+    assert "the defaults changed: the baseline is of reading plain" in check().stdout
+
+
+def test_a_reading_that_the_configuration_names_is_another_setting() -> None:
+    (other,) = {"plain", "mixed"} - {DEFAULT_READING}
+    check("--update")
+    Path("c.yaml").write_text(CONFIG + f"reading: {other}\n")
+    assert f"reading is {DEFAULT_READING} in the baseline, {other} now" in check_refused()
+
+
+def test_other_settings_are_told_from_other_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
+    check("--update")
+    other_default(monkeypatch)
+    Path("c.yaml").write_text(CONFIG + "ready_order: breadth-first\n")
+    problem = "ready_order is depth-first in the baseline, breadth-first now"
+    assert f"it is of other settings ({problem})" in check_refused()
+
+
+def test_a_reading_of_ones_own_lies_beside_the_configuration() -> None:
+    Path("sub").mkdir()
+    Path("sub/own.yaml").write_text(
+        "description: one\nbased_on: mixed\nplacement: {pixels: {value: tiles, source: one's own}}\n"
+    )
+    Path("sub/c.yaml").write_text(CONFIG + "reading: own.yaml\n")
+    arguments = ("check", "sub/c.yaml", "--workers", "1", "--baseline", FILE)
+    assert simmpp(*arguments, "--update").exit_code == 0
+    assert simmpp(*arguments).exit_code == 0

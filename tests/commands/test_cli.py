@@ -14,6 +14,7 @@ from calls import begin_in, simmpp
 
 from simmpp.commands.options import window_of
 from simmpp.common.errors import ConfigError, ModelError
+from simmpp.common.units import format_ps
 from simmpp.methods.columns import COLUMNS
 
 CONFIG = """
@@ -41,6 +42,22 @@ def test_run_prints_every_policy_with_reference_and_ceiling() -> None:
     assert profit.split()[2] == "1.000"
     assert any(line.startswith("bound: total compute / 4 = ") for line in lines)
     assert done.stderr == ""
+
+
+def test_run_names_the_best_classical_dataflow() -> None:
+    policies = "[ray, concurrent, {name: object, label: keen, merge_requests: false}]"
+    done = simmpp("run", "c.yaml", "--set", f"policy={policies}", "--out", "out")
+    with open("out/results.csv", newline="") as file:
+        times = {row["policy"]: int(row["makespan_ps"]) for row in csv.DictReader(file)}
+    assert min(times, key=lambda title: times[title]) == "replicated"
+    best = min(("keen", "ray"), key=lambda title: times[title])  # "keen" is object dataflow
+    others = [title for title in ("keen", "ray", "concurrent") if title != best]
+    assert " ".join(done.stdout.split("best classical dataflow: ")[1].split()) == "; ".join(
+        [
+            f"{best}, {format_ps(times[best])}",
+            *(f"{title} takes {times[title] / times[best]:.3f} times as long" for title in others),
+        ]
+    )
 
 
 def test_run_says_when_a_rule_never_fired() -> None:

@@ -18,6 +18,7 @@ from implementations import run
 
 from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import ENGINES
+from simmpp.machine.messages import OBJECT
 from simmpp.policy.parameters import POLICIES
 from simmpp.policy.rules import DataflowPolicy, Rule
 from simmpp.policy.view import View
@@ -96,7 +97,8 @@ def _floors(view: View) -> View:
 
 def adversarial_case(seed: int) -> Case:
     case = random_case(seed)
-    return replace(case, policy=replace(case.policy, name="adversary"))
+    packing = POLICIES["adversary"].packings[seed % 3]
+    return replace(case, policy=replace(case.policy, name="adversary", packing=packing))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -117,7 +119,7 @@ def test_every_integer_is_the_oracles(
         got = asdict(run(engine, case))
         for name in expected:
             assert got[name] == expected[name], f"seed {seed}: {name} under {case.policy}"
-        assert got["rays_sent"] + got["messages_by_kind"][1] <= got["tests"]
+        assert got["rays_sent"] + got["parts_by_kind"][OBJECT] <= got["tests"]
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -33,7 +33,7 @@ def test_the_tests_of_every_run_make_the_picture(spec: str) -> None:
     scene = simmpp.load_scene(spec)
     workload = simmpp.trace(scene, PICTURE)
     machine = simmpp.make_machine(processors=PROCESSORS)
-    choices = product(get_args(Owners), get_args(Residents), get_args(Pixels))
+    choices = product(get_args(Owners), get_args(Residents), (*get_args(Pixels), simmpp.Cells(3)))
     for n, (owners, residents, pixels) in enumerate(choices):
         memory = simmpp.Memory(fraction=Fraction(n % 5, 8), residents=residents, transient=n % 3)
         rules = simmpp.PlacementRules(owners, pixels)

@@ -33,6 +33,7 @@ WORDS = st.sampled_from(
         "a.parquet", "w.npz", "\"\\0\"", "\"\\n\"", "\"\\u2028\"", "é", "💥", "&a 1", "*a", "!!int 3", "!x y",
         "? a", "- a", "[", "]", "{", "}", "a: b: c", "|", ">", "# x", "'", "%YAML 1.1", "---", "...", "\t",
         "[]", "{}", "[[]]", "{a: 1}", "[1, 1]", "[0, 1]", "[1, 1, 4]", "{refresh: 5 ms}", "{clusters: 3}",
+        "{cells: 3}", "{cells: 0}", "x", "rows", "5%",
     ]
 )  # fmt: skip
 KEYS = st.sampled_from(
@@ -85,7 +86,7 @@ SETS = st.sampled_from(
         "memory.bytes", "memory.transient", "machine.latency", "machine.test", "machine.test.sphere",
         "machine.shape", "machine.pack.rays.bandwidth", "machine.quantum", "policy", "policy.batch",
         "policy.min_load", "policy.load_info", "seeds", "engine", "method", "sweep", "sweep.processors",
-        "check.time_profit", "tolerance", "ready_order", "placement.owners",
+        "check.time_profit", "tolerance", "ready_order", "placement.owners", "placement.pixels",
     ]
 )  # fmt: skip
 

@@ -63,6 +63,8 @@ class Outcome:
     """Every message unpacked or packed and every computation, those of a PE one after another."""
     tested: list[tuple[int, int]]
     """(ray, object) in the order performed: by the beginnings of the computes."""
+    ray_hops: list[int]
+    """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
 
 
 @dataclass
@@ -81,6 +83,7 @@ class Ledger:
     tested: list[tuple[int, int]] = field(default_factory=list)
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
+    ray_hops: list[int] = field(default_factory=list)
     held_rays: list[int] = field(default_factory=list)
     held_bytes: list[int] = field(default_factory=list)
 
@@ -164,4 +167,5 @@ class Ledger:
             activities=sorted(activities, key=lambda row: row[:2]),
             slices=self.clipped(end),
             tested=self.tested,
+            ray_hops=self.ray_hops,
         )

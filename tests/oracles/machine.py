@@ -8,11 +8,11 @@ classes and the rules of policies, which it asks about all that waits, enough or
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from typing import Any
 
-from oracles.costs import copy_ps, intersection_ps
+from oracles.costs import copy_ps, hops_from, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
 from oracles.state import PE, Message, Part
@@ -85,11 +85,13 @@ class Simulation(Dispatch):
         if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
         pe.refresh_allowed = not message.count(LOAD)
+        far = hops_from(self.machine.shape, message.source)[pe.number]
         for part in message.parts:
             if part.kind == RAYS:
                 pe.make_ready(list(part.rays), self.ready_order)
+                self.cross(part.rays, far)
             elif part.kind == OBJECT:
-                self.release(pe, part.obj)
+                self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
         wanted = [part.obj for part in message.parts if part.kind == REQUEST]
         if wanted:
@@ -98,8 +100,13 @@ class Simulation(Dispatch):
         self.sample_rays(pe)
         return clock
 
-    def release(self, pe: PE, obj: int) -> None:
-        """A fetched object is here: grant waiting rays their test."""
+    def cross(self, rays: Iterable[int], links: int) -> None:
+        """Something crossed links for these rays."""
+        for ray in rays:
+            self.ledger.ray_hops[ray] += links
+
+    def release(self, pe: PE, obj: int) -> list[int]:
+        """A fetched object is here: grant waiting rays their test; returns these."""
         pe.in_flight[obj] -= 1
         waiting = pe.rays_of(obj)
         released = waiting if self.policy.merge_requests else waiting[:1]
@@ -110,6 +117,7 @@ class Simulation(Dispatch):
             pe.sendable_since[obj] = pe.next_rank()
         if self.placement.transient > 0:
             pe.keep(obj, self.placement.transient)
+        return released
 
     def compute(self, time: int, pe: PE) -> int:
         """Up to a quantum of tests; returns the end of that."""

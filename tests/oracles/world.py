@@ -47,6 +47,7 @@ class World:
         objects = [int(o) for o in self.workload.itinerary_objects]
         self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
         self.positions = [0] * self.workload.n_rays
+        self.ledger.ray_hops = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         for pe in self.pes:
             self.sample_rays(pe)

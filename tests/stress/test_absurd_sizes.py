@@ -48,6 +48,7 @@ def test_sweeps_that_never_end(tmp_path: Path) -> None:
     [
         "processors=65537", "picture.resolution=16385", "picture.max_depth=101",
         "machine.quantum=2147483648", "memory.bytes=1e18 B", "memory.transient=2147483648",
+        "placement.pixels={cells: 2147483648}", "memory.transient=1e30%",
         "machine.latency=11 s",
         "machine.link_bandwidth=1e16 B/s", "machine.link_bandwidth=999 B/s", "policy.batch=0",
         "seeds=[9223372036854775808]", "scene=balls:20", "scene=tetra:15", "scene=mountain:40",

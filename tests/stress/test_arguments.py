@@ -64,6 +64,15 @@ def test_what_is_no_share_and_no_word() -> None:
         for word in ("", "x", None, NAN):
             assert refused(call, **{name: word}).startswith(f"{name}: value ")
     refused(simmpp.PolicyParameters, "object", load_info="x")
+    for value in (Fraction(3, 2), Fraction(-1, 2), "150%", "x%", "1", 0.1):
+        assert refused(simmpp.Memory, transient=value).startswith("transient: value ")
+
+
+@pytest.mark.parametrize("value", [0, *NOT_COUNTS])
+def test_what_is_no_side_of_cells(value: object) -> None:
+    assert refused(simmpp.Cells, value).startswith("cells: value ")
+    pixels = {"cells": value}
+    assert refused(simmpp.PlacementRules, pixels=pixels).startswith("pixels: cells: value ")
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

@@ -189,7 +189,7 @@ def test_one_pe_and_prime_numbers_of_them(processors: int, policy: str) -> None:
     machine = simmpp.make_machine("t3e", processors=processors)
     assert sorted(machine.shape) == [1, 1, processors]
     memory = simmpp.Memory(fraction=Fraction(1, 4))
-    for pixels in ("blocks", "tiles", "interleaved", "random"):
+    for pixels in ("blocks", "rows", simmpp.Cells(2), "tiles", "interleaved", "random"):
         rules = simmpp.PlacementRules(pixels=pixels)
         placement = simmpp.place(workload, processors, memory, rules, 0)
         case = Case(workload, machine, placement, simmpp.PolicyParameters(policy, batch=9))

@@ -105,10 +105,10 @@ def note_finished(s: Run, n_rays: int, now_ps: int) -> None:
 
 @kernel
 def note_departure(s: Run, m: Row) -> None:
-    """A message has been packed."""
+    """A message has been packed; rays in it, or in others that were made up with it, have left."""
     _count_message(s, m, 1)
+    note_load(s, m.source, m.depart_ps)
     if m.kind == RAYS:
-        note_load(s, m.source, m.depart_ps)
         moment = _moment(s, m.depart_ps)
         moment.batches += 1
         moment.rays += m.n

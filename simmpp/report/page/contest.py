@@ -62,8 +62,8 @@ def replicated_policies(points: Points) -> set[str]:
 
 
 def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
-    means = _means(points, flows)
-    ranked = sorted(flows, key=lambda n: means[n])
+    times = means(points, flows)
+    ranked = sorted(flows, key=lambda n: times[n])
     best, second = ranked[0], ranked[1] if len(ranked) > 1 else None
     ratios = makespan_ratios(points, second, best) if second is not None else []
     low, high = (interval(ratios) if ratios else None) or (math.nan, math.nan)
@@ -79,7 +79,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
     )
 
 
-def _means(points: Points, flows: list[int]) -> dict[int, float]:
+def means(points: Points, flows: list[int]) -> dict[int, float]:
     """Mean makespans (ps) over the seeds that all have, or each its own where there are none."""
     seeds = [set(points.seeds[n]) for n in flows]
     common = set.intersection(*seeds) or set.union(*seeds)

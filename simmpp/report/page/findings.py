@@ -13,6 +13,7 @@ from simmpp.common.units import counted
 from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
+from simmpp.report.page.classical import FREE, Duel, duels_of
 from simmpp.report.page.contest import (
     ALONE,
     EQUAL,
@@ -49,7 +50,7 @@ def sentences(points: Points) -> list[str]:
     if not contests:
         return ["No point has a result."]
     lines = [_fastest(points, contests), *_best_gains(points)]
-    return [*lines, *_ceiling(points, contests), *_failed(points)]
+    return [*lines, *_classical(points), *_ceiling(points, contests), *_failed(points)]
 
 
 def _fastest(points: Points, contests: Sequence[Contest]) -> str:
@@ -114,6 +115,30 @@ def _interval(points: Points, number: int) -> str:
     row = points.profits[number]
     low, high = row["time_profit_low"], row["time_profit_high"]
     return f"95 % interval {low:.3g} to {high:.3g}" if words.is_number(low) and low < high else ""
+
+
+def _classical(points: Points) -> Iterator[str]:
+    """The best classical way beside each dataflow that is none."""
+    by_title: dict[str, list[Duel]] = {}
+    for duel in duels_of(points):
+        if not math.isnan(duel.ratio):
+            by_title.setdefault(points.profits[duel.other]["policy"], []).append(duel)
+    for title, duels in by_title.items():
+        ways = Counter(words.policy(points.profits[duel.classical]["policy"]) for duel in duels)
+        flow, times = words.policy(title), range_text(duel.ratio for duel in duels)
+        free = [name for name in FREE if name in points.axes]
+        beaten = sum(duel.ratio < 1 for duel in duels)
+        if len(duels) == 1:
+            (which,), how = ways, words.point(points.profits[duels[0].classical], free)
+            where, end = f"{which} ({how})" if how else which, ""
+        else:
+            at = "; ".join(f"{way} at {number}" for way, number in ways.most_common())
+            over = f", over {' and '.join(free)}" if free else ""
+            where, end = f"{at} of {len(duels)} places{over}", f", and less at {beaten or 'none'}"
+        yield (
+            f"Under the memory of {flow} the best classical way is {where}: "
+            f"{flow} takes {times} times as long{end}."
+        )
 
 
 def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[str]:

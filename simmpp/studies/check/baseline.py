@@ -16,7 +16,8 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import read_csv, replaced
-from simmpp.config.config import Config, config_from_mapping, described
+from simmpp.config.config import Config, config_from_mapping, described, with_key
+from simmpp.config.defaults import READING
 from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
 from simmpp.run.record import read_record, write_record
@@ -29,6 +30,8 @@ DIGESTS = "sha256"
 IRRELEVANT_TO_INTEGERS = ("check", "engine")
 """Keys of a configuration that change no integer. A journal has no such exception for the engine,
 which is a column of its rows."""
+BEFORE_READINGS = "plain"
+"""The reading of a baseline that names none."""
 MACHINES, WORKLOADS = "machines", "workloads"
 """What of ``run.json`` explains moves."""
 UPDATE = "run with --update to make one"
@@ -51,13 +54,14 @@ def read_baseline(path: Path, config: Config) -> Sweep:
     folder = baseline_folder(path)
     try:
         baseline = read_sweep(folder)
+        problem = _other_settings(baseline.record["config"], config)
     except FileNotFoundError as error:
         missing = Path(error.filename).name if folder.is_dir() else "such folder"
         raise _wrong(path, f"there is no {missing}: {UPDATE}") from None
-    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
+    except (OSError, ValueError, KeyError, TypeError, csv.Error, ConfigError) as error:
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise _wrong(path, f"it is no baseline ({reason}): {UPDATE}") from None
-    if problem := _other_settings(baseline.record["config"], config):
+    if problem:
         raise _wrong(path, f"it is of other settings ({problem}): {UPDATE}")
     return baseline
 
@@ -85,11 +89,27 @@ def _digest(path: Path) -> str:
 
 
 def _other_settings(recorded: dict[str, Any], config: Config) -> str:
-    """What differs between the settings recorded and these; keys not known then had defaults."""
+    """What differs between the settings recorded and these; keys not known then had defaults.
+
+    Those of the reading that is recorded: that the default one is another now is no other setting.
+    """
+    reading = recorded.get(READING, BEFORE_READINGS)
+    if default_changed(recorded, config):
+        config = with_key(config, READING, reading)
     here = described(config)
-    defaults = described(config_from_mapping({"scene": here["scene"]}))
-    before, now = (_merged(defaults, given) for given in (recorded, here))
-    return difference(before, now, "in the baseline")
+    known = {"scene": here["scene"], READING: reading}
+    if policies := recorded.get("policy"):
+        keys = ("name", "label")
+        known["policy"] = [{key: p[key] for key in keys if key in p} for p in policies]
+    defaults = config_from_mapping(known, folder=config.kept_source.folder)
+    before = _merged(described(defaults), recorded)
+    return difference(before, _merged(here, here), "in the baseline")
+
+
+def default_changed(recorded: Mapping[str, Any], config: Config) -> bool:
+    """Does a configuration leave the reading to a default that was another when it was recorded?"""
+    is_left = READING not in config.kept_source.data
+    return is_left and recorded.get(READING, BEFORE_READINGS) != config.settings.reading
 
 
 def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
@@ -98,12 +118,21 @@ def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, 
     for key in ("picture", "machine", "memory", "placement"):
         if isinstance(given.get(key), dict):
             merged[key] = {**defaults[key], **given[key]}
+    policies = zip(defaults["policy"], merged["policy"], strict=True)
+    merged["policy"] = [{**by_default, **policy} for by_default, policy in policies]
     return merged
 
 
-def reasons(baseline: Sweep, now: Sweep) -> list[str]:
-    """Machines and workloads that are not what they were: why values may have moved."""
+def reasons(config: Config, baseline: Sweep, now: Sweep) -> list[str]:
+    """Defaults, machines and workloads that are not what they were: why values may have moved."""
     problems = []
+    recorded = baseline.record["config"]
+    if default_changed(recorded, config):
+        was = recorded.get(READING, BEFORE_READINGS)
+        problems.append(
+            f"the defaults changed: the baseline is of reading {was}, the default is "
+            f"{config.settings.reading} now; `reading: {was}` in the configuration is the old one"
+        )
     for old, new in zip(_machines(baseline), _machines(now), strict=False):
         if problem := difference(old, new, "in the baseline"):
             problems.append(f"machine {new.get('name')}, shape {new.get('shape')}: {problem}")

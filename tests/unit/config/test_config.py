@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import config_from_mapping, load_config
 from simmpp.config.settings import Settings
-from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.placement.placement import Cells, Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.picture import Picture
 
@@ -44,8 +44,8 @@ scene: {mesh: bunny.glb, objects: {clusters: 64}}
 picture: {resolution: 9, samples: corners, max_depth: 3, shadows: false, refraction: false}
 machine: {preset: t3d, shape: [8, 1, 1], test: 1 us, pack: {rays: {bandwidth: unlimited}}}
 processors: 8
-memory: {bytes: 64 MB, residents: nearest, transient: 3}
-placement: {owners: morton, pixels: tiles}
+memory: {bytes: 64 MB, residents: nearest, transient: 5%}
+placement: {owners: morton, pixels: {cells: 8}}
 ready_order: breadth-first
 policy:
   - object
@@ -59,8 +59,8 @@ sweep: {processors: [8], memory.bytes: [1 MB, 2 MB], policy: [object, [ray, conc
 """)
     assert config.scene_spec == {"mesh": "bunny.glb", "objects": {"clusters": 64}}
     assert config.picture == Picture(9, "corners", 3, shadows=False, refraction=False)
-    assert config.memory == Memory(bytes=64_000_000, residents="nearest", transient=3)
-    assert config.settings.placement == PlacementRules("morton", "tiles")
+    assert config.memory == Memory(bytes=64_000_000, residents="nearest", transient=Fraction(1, 20))
+    assert config.settings.placement == PlacementRules("morton", Cells(8))
     assert config.machine_for(8).test.cone_ps == 1_000_000
     assert config.settings.policy[1] == PolicyParameters(
         "concurrent", "eager", 100, 1, 2, "piggyback", 5 * 10**9, merge_requests=False
@@ -93,6 +93,21 @@ def test_scene_files_lie_beside_the_configuration(tmp_path: Path) -> None:
 
 
 S = "scene: rings:1\n"
+
+
+@pytest.mark.parametrize("value", [0, 1, "5%", "1/64", "x"])
+def test_transient_memory_is_a_number_a_share_or_as_the_fraction(value: int | str) -> None:
+    share = value if value in (0, 1, "x") else Fraction({"5%": "1/20"}.get(str(value), str(value)))
+    assert load(S, f"memory.transient={value}").memory.transient == share
+    assert load(S + f"memory: {{transient: {value}}}").memory.transient == share
+    assert isinstance(load(S, "memory.transient=100%").memory.transient, Fraction)
+    assert type(load(S, "memory.transient=1").memory.transient) is int
+
+
+def test_pixels_are_a_word_or_the_side_of_cells() -> None:
+    for text, rule in (("rows", "rows"), ("{cells: 8}", Cells(8))):
+        assert load(S, f"placement.pixels={text}").settings.placement.pixels == rule
+    assert PlacementRules(pixels={"cells": 8}) == PlacementRules(pixels=Cells(8))  # type: ignore[arg-type]
 
 
 def test_set_writes_short_forms_out() -> None:

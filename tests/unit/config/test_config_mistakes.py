@@ -75,6 +75,30 @@ MISTAKES = [
         S + "memory:\n  resident: x",
         "c.yaml:3: memory: unknown key 'resident': did you mean 'residents'?",
     ),
+    (
+        S + "memory:\n  transient: 150%",
+        "c.yaml:3: memory.transient: value '150%': expected a number of objects, a share of them",
+    ),
+    (
+        S + "memory: {transient: 0.1}",
+        "c.yaml:2: memory.transient: value 0.1: expected a number of objects, a share of them",
+    ),
+    (
+        S + "placement:\n  pixels: row",
+        "c.yaml:3: placement.pixels: value 'row': expected blocks, rows, tiles, interleaved, rand",
+    ),
+    (
+        S + "placement:\n  pixels: {cells: 0}",
+        "c.yaml:3: placement.pixels: cells: value 0: expected an integer from 1 to 2147483647",
+    ),
+    (
+        S + "placement: {pixels: {cell: 8}}",
+        "c.yaml:2: placement.pixels: value {'cell': 8}: expected blocks, rows,",
+    ),
+    (
+        S + "sweep:\n  placement.pixels: [rows, {cells: 8},\n   {cells: -1}]",
+        "c.yaml:4: placement.pixels: cells: value -1: expected an integer from 1",
+    ),
     (S + "memory: 3", "c.yaml:2: memory: value 3: expected a mapping (key: value)"),
     (
         S + "machine: {preset: t3x}",

@@ -90,7 +90,8 @@ def test_what_is_described_can_be_loaded_again() -> None:
                 "latency": "13.3 ns", "test": "2 us", "link_bandwidth": "unlimited", "probe": 0,
                 "shape": [8, 1, 1], "pack": {"rays": {"fixed": "1 ps"}}, "ray_bytes": "1 KiB",
             },
-            "memory": {"bytes": "64 MB"},
+            "memory": {"bytes": "64 MB", "transient": "100%"},
+            "placement": {"pixels": {"cells": 8}},
             "policy": ["ray", {"label": "x", "min_load": "1/3", "load_info": {"refresh": "5 ms"}}],
             "tolerance": "2%",
             "check": {"speedup": 0.01},
@@ -100,6 +101,7 @@ def test_what_is_described_can_be_loaded_again() -> None:
     )  # fmt: skip
     plain = described(config)
     assert plain["machine"]["latency"] == "13.3 ns"
+    assert (plain["memory"]["transient"], plain["placement"]["pixels"]) == ("1/1", {"cells": 8})
     assert plain["policy"][1]["load_info"] == {"refresh": "5 ms"}
     again = config_from_mapping(json.loads(json.dumps(plain)))
     assert described(again) == plain

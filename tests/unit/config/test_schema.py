@@ -94,6 +94,10 @@ SHORT_FORMS: list[tuple[str, object]] = [
     ("tolerance", "none"),
     ("tolerance", None),
     ("memory.bytes", None),
+    *(("memory.transient", kept) for kept in (0, 3, "0%", "5 %", "100%", "1/64", "x")),
+    ("placement.pixels", "rows"),
+    ("placement.pixels", {"cells": 1}),
+    ("sweep", {"placement.pixels": ["blocks", {"cells": 8}], "memory.transient": [0, "5%", "x"]}),
     ("sweep", {"processors, machine.shape": [[8, [2, 2, 2]]], "policy": ["ray", ["object"]]}),
 ]
 
@@ -131,7 +135,14 @@ MISTAKES: list[tuple[str, object]] = [
     ("machine.link_bandwidth", "3 MB"),
     ("machine.contention", "link"),
     ("machine.quantum", 0),
+    ("memory.transient", 0.1),
+    ("memory.transient", "1"),
+    ("memory.transient", "some"),
     ("placement.owners", "x"),
+    ("placement.pixels", "row"),
+    ("placement.pixels", {"cells": 0}),
+    ("placement.pixels", {"cells": "8"}),
+    ("placement.pixels", {}),
     ("policy", "objct"),
     ("policy", []),
     ("policy", [1]),
@@ -175,6 +186,7 @@ VALUES = st.sampled_from([
     0, 1, 2, 8, 100, 101, 16384, 16385, 65536, 65537, 2**31 - 1, 2**31, -1, 0.5, 1.5, True, False,
     "centres", "hot", "tiles", "links", "none", "ray", "object", "simpy", "simulate", "depth-first",
     "t3d", "12 us", "1 KiB", "3 MB/s", "12%", "1/64", "x", "", [], {}, [8], {"x": 1},
+    "rows", {"cells": 1}, {"cells": 0}, {"cells": 8, "x": 1},
 ])  # fmt: skip
 
 

@@ -18,10 +18,12 @@ MEMORIES = [
 
 
 @pytest.mark.parametrize("owners", ["bisection", "morton", "round_robin", "random"])
-@pytest.mark.parametrize("pixels", ["blocks", "tiles", "interleaved", "random"])
+@pytest.mark.parametrize(
+    "pixels", ["blocks", "rows", {"cells": 2}, "tiles", "interleaved", "random"]
+)
 @pytest.mark.parametrize("memory", MEMORIES)
 def test_only_what_is_drawn_depends_on_the_seed(
-    owners: str, pixels: str, memory: dict[str, object]
+    owners: str, pixels: object, memory: dict[str, object]
 ) -> None:
     config = config_from_mapping(
         {

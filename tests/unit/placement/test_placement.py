@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,13 +17,14 @@ from simmpp.common.randomness import generator
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.place import place
-from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.placement.placement import Cells, Memory, PlacementRules, Transient
 from simmpp.placement.residents import resident_count
 from simmpp.workload.workload import Workload
 
 OWNERS = ("bisection", "morton", "round_robin", "random")
 RESIDENTS = ("random", "nearest", "hot")
-PIXELS = ("blocks", "tiles", "interleaved", "random")
+PIXELS = ("blocks", "rows", "tiles", "interleaved", "random")
+PICTURES = st.tuples(st.integers(1, 12), st.integers(1, 12))
 
 
 def a_workload(least_objects: int = 4) -> Workload:
@@ -109,21 +112,57 @@ def test_half_an_object_is_rounded_up() -> None:
 
 
 @pytest.mark.parametrize("rule", PIXELS)
-@given(
-    rows=st.integers(1, 12),
-    columns=st.integers(1, 12),
-    processors=st.integers(1, 30),
-    seed=st.integers(0, 2),
-)
+@given(picture=PICTURES, processors=st.integers(1, 30), seed=st.integers(0, 2))
 def test_pixels_are_dealt_evenly(
-    rule: str, rows: int, columns: int, processors: int, seed: int
+    rule: str, picture: tuple[int, int], processors: int, seed: int
 ) -> None:
-    found = pixel_pes(rule, (rows, columns), processors, seed)  # type: ignore[arg-type]
-    counts = np.bincount(found, minlength=processors)
-    assert len(found) == rows * columns
+    dealt = pixel_pes(rule, picture, processors, seed)  # type: ignore[arg-type]
+    counts = np.bincount(dealt, minlength=processors)
+    assert len(dealt) == picture[0] * picture[1]
     assert len(counts) == processors
     if rule != "tiles":
-        assert counts.max() - counts.min() <= 1
+        assert counts.max() - counts.min() <= (picture[1] if rule == "rows" else 1)
+
+
+@given(picture=PICTURES, side=st.integers(1, 14), processors=st.integers(1, 30))
+def test_cells_and_rows_are_counted_off_in_turn(
+    picture: tuple[int, int], side: int, processors: int
+) -> None:
+    def dealt(rule: Any) -> list[int]:
+        pes = pixel_pes(rule, picture, processors, 0)
+        assert pes.dtype == np.int32
+        return pes.tolist()
+
+    assert dealt(Cells(side)) == counted_off(picture, (side, side), processors)
+    assert dealt("rows") == counted_off(picture, (1, picture[1]), processors)
+    assert dealt("interleaved") == dealt(Cells(1)) == counted_off(picture, (1, 1), processors)
+    most = -(-len(set(cells_of(picture, (side, side)))) // processors) * side * side
+    assert max(np.bincount(dealt(Cells(side)))) <= most
+
+
+def counted_off(picture: tuple[int, int], cell: tuple[int, int], processors: int) -> list[int]:
+    """PEs by going over the picture pixel by pixel: each cell that is met first gets the next."""
+    pe_of: dict[tuple[int, int], int] = {}
+    return [pe_of.setdefault(each, len(pe_of) % processors) for each in cells_of(picture, cell)]
+
+
+def cells_of(picture: tuple[int, int], cell: tuple[int, int]) -> list[tuple[int, int]]:
+    """Row and column of each pixel's cell."""
+    return [(y // cell[0], x // cell[1]) for y in range(picture[0]) for x in range(picture[1])]
+
+
+@given(
+    down=st.integers(1, 4),
+    across=st.integers(1, 4),
+    side=st.integers(1, 4),
+    processors=st.integers(1, 9),
+)
+def test_whole_cells_differ_by_one_between_pes(
+    down: int, across: int, side: int, processors: int
+) -> None:
+    dealt = pixel_pes(Cells(side), (down * side, across * side), processors, 0)
+    counts = np.bincount(dealt, minlength=processors)
+    assert counts.max() - counts.min() in (0, side * side)
 
 
 def test_pixels_worked_by_hand() -> None:
@@ -133,6 +172,54 @@ def test_pixels_worked_by_hand() -> None:
     assert tiles.tolist() == [[0, 0, 1, 1], [0, 0, 1, 1], [2, 2, 3, 3], [2, 2, 3, 3]]
     wide = pixel_pes("tiles", (2, 8), 4, 0).reshape(2, 8)
     assert wide.tolist() == [[0, 0, 1, 1, 2, 2, 3, 3]] * 2
+    assert pixel_pes("rows", (5, 2), 3, 0).tolist() == [0, 0, 1, 1, 2, 2, 0, 0, 1, 1]
+    # 3 cells of 2 x 2 side by side, the last one pixel wide, and the lower ones one pixel high
+    cells = pixel_pes(Cells(2), (3, 5), 4, 0).reshape(3, 5)
+    assert cells.tolist() == [[0, 0, 1, 1, 2], [0, 0, 1, 1, 2], [3, 3, 0, 0, 1]]
+    assert pixel_pes(Cells(2**31 - 1), (2, 2), 3, 0).tolist() == [0, 0, 0, 0]
+
+
+@pytest.mark.parametrize("transient", [0, 3, Fraction(0), Fraction(1, 3), Fraction(1), "x"])
+@pytest.mark.parametrize("residents", RESIDENTS)
+@given(case_seed=st.integers(0, 200), fraction=st.sampled_from([0, 1, 2, 5, 8]))
+def test_what_is_kept_is_a_number_or_a_share_of_all_objects(
+    residents: str, transient: Transient, case_seed: int, fraction: int
+) -> None:
+    workload = random_case(case_seed).workload
+    x, n = Fraction(fraction, 8), workload.n_objects
+    memory = Memory(x, residents=residents, transient=transient)  # type: ignore[arg-type]
+    share = x if transient == "x" else transient
+    wanted = share if isinstance(share, int) else math.floor(share * n + Fraction(1, 2))
+    for processors in (1, 3):
+        placed = place(workload, processors, memory, PlacementRules(), 0)
+        assert placed.transient == wanted and type(placed.transient) is int
+
+
+def test_as_many_are_kept_as_are_resident_in_the_mean_where_memory_is_in_bytes() -> None:
+    # 5 objects of a byte: two PEs own 2 and 3, and hold 3 each of 3 bytes: 3 in the mean
+    workload = workload_of(5, [[i] for i in range(5)], object_bytes=[1] * 5)
+
+    def kept(room: int, processors: int) -> int:
+        memory = Memory(bytes=room, transient="x")
+        return place(workload, processors, memory, PlacementRules("round_robin"), 0).transient
+
+    assert [kept(room, 2) for room in (0, 2, 3, 4, 5, 9)] == [3, 3, 3, 4, 5, 5]  # 2 1/2 is 3
+    assert [kept(room, 4) for room in (0, 1, 2, 3)] == [1, 1, 2, 3]  # 5/4, 5/4, 2, 3
+    assert kept(0, 1) == 5
+    assert (
+        place(workload, 2, Memory(bytes=0, transient=Fraction(1, 2)), PlacementRules(), 0).transient
+        == 3
+    )
+
+
+def test_nothing_is_kept_of_an_empty_scene() -> None:
+    nothing = workload_of(0, [[]])
+    for memory in (
+        Memory(transient="x"),
+        Memory(transient=Fraction(1)),
+        Memory(bytes=9, transient="x"),
+    ):
+        assert place(nothing, 2, memory, PlacementRules(), 0).transient == 0
 
 
 def test_golden_draws() -> None:

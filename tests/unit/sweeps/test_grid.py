@@ -176,8 +176,12 @@ def test_equal_points_are_one_simulation() -> None:
         ("memory.bytes", ["1 kB", "2 kB"]),
         ("memory.residents", ["random", "nearest"]),
         ("memory.transient", [0, 1]),
+        ("memory.transient", [1, "100%"]),
+        ("memory.transient", ["5%", "x"]),
         ("placement.owners", ["bisection", "random"]),
         ("placement.pixels", ["blocks", "tiles"]),
+        ("placement.pixels", ["rows", {"cells": 2}]),
+        ("placement.pixels", [{"cells": 1}, {"cells": 2}]),
         ("ready_order", ["depth-first", "breadth-first"]),
     ],
 )

@@ -1,0 +1,59 @@
+"""``simmpp reading``: everything that a reading sets with its source; and what it set in a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import click
+from rich.table import Table
+
+from simmpp.commands import options
+from simmpp.commands.terminal import output, texts
+from simmpp.config.axes import keys_of
+from simmpp.config.config import Config, point_at
+from simmpp.config.defaults import READING
+from simmpp.config.reading import Line, load_reading, reading_names
+
+
+@click.command("reading", epilog=options.examples("simmpp reading plain", "simmpp reading"))
+@click.argument("name", required=False)
+def reading_command(name: str | None) -> None:
+    """Print all that a reading sets with its source.
+
+    Without NAME, the readings that there are. NAME may be a file of one's own.
+
+    A reading gives defaults to policies, placement, memory and costs: what the paper is taken to
+    mean where it leaves something open. A configuration chooses one by its key reading.
+    """
+    console = output()
+    if name is None:
+        readings = ((name, load_reading(name).description) for name in reading_names())
+        console.print(texts(("reading", "description"), readings, whole=1))
+        return
+    reading = load_reading(name)
+    console.print(f"{reading.name}: {reading.description}\n")
+    console.print(_table("key", reading.lines))
+
+
+def print_reading(config: Config) -> None:
+    """Say what the reading sets in a configuration, and whether its costs are left out."""
+    name, costs, preset = config.reading.name, config.reading.costs, config.settings.machine.preset
+    if lines := config.lines_of_reading:
+        output().print()
+        output().print(_table(f"reading {name} sets", lines))
+    if costs and preset not in costs:
+        click.echo(f"reading {name} has costs for {', '.join(costs)}, none for {preset}: not set")
+
+
+def print_readings_of_sweep(config: Config) -> None:
+    """The same for each reading that a sweep has; what the sweep sets no reading does."""
+    axes = config.axes
+    first = dict.fromkeys(axes, 0)
+    swept = [(name, axis) for name, axis in axes.items() if READING in keys_of(axis)]
+    chosen = [{**first, name: n} for name, axis in swept for n in range(len(axis))]
+    for numbers in chosen or [first]:
+        print_reading(point_at(config, axes, numbers))
+
+
+def _table(heading: str, lines: Iterable[Line]) -> Table:
+    return texts((heading, "value", "source"), lines)

@@ -1,0 +1,60 @@
+"""What a reading gives to a configuration: only what the configuration does not say itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from simmpp.config.axes import SAME
+from simmpp.config.reading import MACHINE, POLICY, Line, Reading
+from simmpp.config.settings import MachineSettings, long_policies
+from simmpp.policy.parameters import DEFAULT_POLICY
+
+READING = "reading"
+
+
+def filled(data: Mapping[str, Any], reading: Reading) -> dict[str, Any]:
+    """A configuration's data, and below it what the reading sets; costs are not among it.
+
+    What is wrong in the data stays as it is, to be told by who checks it.
+    """
+    return _filled(data, reading)[0]
+
+
+def lines_used(data: Mapping[str, Any], machine: MachineSettings, reading: Reading) -> list[Line]:
+    """Those of the reading's lines that change what the configuration says."""
+    used = _filled(data, reading)[1]
+    if costs := reading.costs.get(machine.preset):
+        own = machine.flat()
+        left = (costs.written(key) for key in costs.constants.flat() if key not in own)
+        used |= dict.fromkeys(f"{MACHINE}.{machine.preset}.{key}" for key in left)
+    return [line for line in reading.lines if line.key in used]
+
+
+def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], dict[str, None]]:
+    """The data filled, and the keys of the lines that it took."""
+    whole, used = {READING: reading.name, **data}, dict[str, None]()
+    for part, values in reading.values.items():
+        if isinstance(given := data.get(part, {}), dict):
+            new = _missing(given, values, part)
+            whole[part] = {**given, **new}
+            used |= dict.fromkeys(f"{part}.{key}" for key in new)
+    policies: list[Any] = []
+    for entry in long_policies(data.get(POLICY, {"name": DEFAULT_POLICY})):
+        if isinstance(entry, dict):
+            name = str(entry.get("name", DEFAULT_POLICY))
+            new = _missing(entry, reading.policies.get(name, {}), POLICY)
+            used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in new)
+            entry = {**entry, **new}
+        policies.append(entry)
+    return {**whole, POLICY: policies}, used
+
+
+def _missing(given: Mapping[str, Any], values: Mapping[str, Any], part: str) -> dict[str, Any]:
+    """The values of the keys that are not given, neither so nor in another way."""
+    return {
+        key: value
+        for key, value in values.items()
+        if key not in given
+        if SAME.get(f"{part}.{key}", "").removeprefix(f"{part}.") not in given
+    }

@@ -1,0 +1,188 @@
+"""Readings: defaults of policies, placement, memory and costs, each with what it rests on.
+
+A paper leaves much open, and what is taken for it decides what comes out. A reading says it in one
+place: a YAML file of the package, or of one's own, in which every value has its source. Keys are
+those of a configuration, but for the policies, which are below their names, and the costs, which
+are below the preset that they are for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pydantic import create_model
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.places import KeyPath, Place, misplaced
+from simmpp.common.sourced import Cited, values_of
+from simmpp.common.strict import Strict, in_words, structure
+from simmpp.common.units import shown
+from simmpp.common.yamlfile import Document, parse_yaml, yaml_text
+from simmpp.machine.constants import Constants
+from simmpp.machine.presets import Preset, preset_names
+from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.policy.parameters import POLICIES, PolicyParameters
+
+Places = dict[KeyPath, Place]
+_FOLDER = files("simmpp") / "config" / "readings"
+_SUFFIXES = (".yaml", ".yml")
+DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
+_NOT_IN_ONE: dict[str, tuple[str, ...]] = {
+    MACHINE: ("shape", "contention"),  # choices, which no preset makes either
+    POLICY: ("name", "label"),
+}
+"""Keys of a configuration that no reading sets."""
+
+
+def _below(cls: type, names: Any) -> Any:
+    """A class of settings with a ``cls`` for each name, all of which may be left out."""
+    fields: dict[str, Any] = {name: (cls | None, None) for name in names}
+    return create_model(f"{cls.__name__}ByName", __base__=Strict, **fields)
+
+
+_Policies: Any = _below(PolicyParameters, POLICIES)
+_Machines: Any = _below(Constants, preset_names())
+
+
+class _Keys(Strict):
+    """What a reading may set; its values are checked by being put in here."""
+
+    placement: PlacementRules = PlacementRules()
+    memory: Memory = Memory()
+    policy: _Policies = _Policies()
+    machine: _Machines = _Machines()
+
+
+class Line(NamedTuple):
+    """One value that a reading sets."""
+
+    key: str
+    """``placement.pixels``, ``policy.concurrent.packing``, ``machine.t3e.test``."""
+    value: str
+    """As the file writes it, with its unit."""
+    source: str
+    """A sentence of the paper, or ESTIMATE, or what else it rests on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Defaults that stand between a preset and a configuration."""
+
+    name: str
+    """As a configuration writes it."""
+    description: str
+    values: Mapping[str, Mapping[str, Any]]
+    """Those of ``placement`` and ``memory``, as users write them."""
+    policies: Mapping[str, Mapping[str, Any]]
+    """Those of each policy, by its name."""
+    costs: Mapping[str, Preset]
+    """Constants, by the preset that they are for."""
+    lines: tuple[Line, ...]
+    """All of it."""
+
+    def policy(self, name: str) -> PolicyParameters:
+        """A policy of which nothing is said but its name."""
+        return structure(PolicyParameters, {"name": name, **self.policies.get(name, {})}, {})
+
+
+def reading_names() -> list[str]:
+    """Readings of the package."""
+    names = (entry.name for entry in _FOLDER.iterdir())
+    return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
+
+
+def load_reading(name: str, folder: Path = Path()) -> Reading:
+    """A reading of the package, or a file that is looked for from ``folder``.
+
+    Raises ConfigError if there is none, or for what is wrong in its file, with file and line.
+    """
+    if name in reading_names():
+        return _reading(name, *_of_package(name))
+    path = folder / name
+    if not name.endswith(_SUFFIXES) or not path.is_file():
+        names = in_words(tuple(reading_names()))
+        raise ConfigError(f"value {shown(name)}: expected {names}, or a file .yaml that exists")
+    return _reading(name, yaml_text(path), str(path))
+
+
+def _of_package(name: str) -> tuple[str, str]:
+    with as_file(_FOLDER / f"{name}.yaml") as path:
+        return yaml_text(path), str(path)
+
+
+@lru_cache(maxsize=32)  # every point of a sweep asks again
+def _reading(name: str, text: str, where: str) -> Reading:
+    description, parts, places = _parts(parse_yaml(text, where))
+    cited = Cited()
+    values = values_of(parts, cited, places)
+    _refuse_choices(cited, places)
+    keys = structure(_Keys, _with_names(values), places)
+    costs = {preset: _costs(preset, keys, cited) for preset in values.get(MACHINE, {})}
+    return Reading(
+        name,
+        description,
+        {key: values[key] for key in ("placement", "memory") if key in values},
+        values.get(POLICY, {}),
+        costs,
+        tuple(Line(key, text, cited.sources[key]) for key, text in cited.texts.items()),
+    )
+
+
+def _parts(document: Document) -> tuple[str, dict[str, Any], Places]:
+    """The description; what a file sets, over what its base sets; and where each of it stands."""
+    data = document.data
+    description = data.get(DESCRIPTION) if isinstance(data, dict) else None
+    if not isinstance(data, dict) or not isinstance(description, str):
+        problem = f"expected a text {DESCRIPTION}, and what the reading sets"
+        raise ConfigError(problem, where=document.where)
+    places: Places = {path: (document.where, line) for path, line in document.lines.items()}
+    parts = {key: part for key, part in data.items() if key not in (DESCRIPTION, BASE)}
+    description = " ".join(description.split())
+    if BASE not in data:
+        return description, parts, places
+    if data[BASE] not in reading_names():
+        problem = f"value {shown(data[BASE])}: expected {in_words(tuple(reading_names()))}"
+        raise misplaced((BASE,), problem, places)
+    _, base, base_places = _parts(parse_yaml(*_of_package(data[BASE])))
+    whole = {
+        part: _over(base.get(part, {}), parts.get(part, {}), 2 if part in (MACHINE, POLICY) else 1)
+        for part in base | parts
+    }
+    return description, whole, base_places | places
+
+
+def _over(below: Any, above: Any, depth: int) -> Any:
+    """What is above, and what is below it of keys that are not above, down to a depth."""
+    if depth == 0 or not isinstance(below, dict) or not isinstance(above, dict):
+        return above
+    both = {key: _over(below[key], above[key], depth - 1) for key in below if key in above}
+    return below | above | both
+
+
+def _refuse_choices(cited: Cited, places: Mapping[KeyPath, Place]) -> None:
+    """Raise ConfigError for what only configurations say."""
+    for key in cited.texts:
+        path = tuple(key.split("."))
+        if path[2:3] and path[2] in _NOT_IN_ONE.get(path[0], ()):
+            raise misplaced(path[:3], "expected none: readings do not set it", places)
+
+
+def _with_names(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values, with each policy's name where ``structure`` looks for it."""
+    policies = values.get(POLICY, {})
+    named = {name: {"name": name, **given} for name, given in policies.items()}
+    return {**values, POLICY: named}
+
+
+def _costs(preset: str, keys: _Keys, cited: Cited) -> Preset:
+    prefix = f"{MACHINE}.{preset}."
+    texts, sources = (
+        {key.removeprefix(prefix): said for key, said in by_key.items() if key.startswith(prefix)}
+        for by_key in (cited.texts, cited.sources)
+    )
+    return Preset(preset, "", getattr(keys.machine, preset), texts, sources)
