@@ -19,6 +19,7 @@ from choices import DEFAULT, FULL, SEVERAL, SINGLE, Choice
 from table import draw
 
 from simmpp.common.files import write_csv
+from simmpp.common.folders import claimed
 from simmpp.run.provenance import result_versions
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
@@ -94,10 +95,12 @@ def write(rows: list[Row], name: str) -> None:
 def main() -> None:
     """Simulate, judge and write, choice by choice, so that it can be stopped; then draw."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/calibration")
-    folder.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
     details: list[Row] = []
-    with closing(Journal(folder, {"versions": result_versions()})) as journal:
+    with (
+        claimed(folder, "calibration"),
+        closing(Journal(folder, {"versions": result_versions()})) as journal,
+    ):
         for choice in (DEFAULT, *SINGLE, *SEVERAL, *FULL):
             plans = plans_of(choice)
             run_plans(plans.values(), journal)

@@ -9,6 +9,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from simmpp.common.files import Row, write_csv, write_text
+from simmpp.common.folders import REPRODUCTION, claimed
 from simmpp.config.config import Config, load_config
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
@@ -64,14 +65,14 @@ def reproduce(
     """
     overrides = _overrides(seeds, resolution)
     plans = {name: plan_of(load_experiment(name, overrides)) for name in EXPERIMENTS}
-    out.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(out, {"versions": result_versions()})) as journal:
-        run_plans(plans.values(), journal, workers, watcher)
-        rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
-        model = load_experiment(MODEL, overrides)
-        verdicts = reproduce_figure2(model, workload_of(model), out)
-        columns = {name: plan.result_columns for name, plan in plans.items()}
-    return _report(rows, columns, verdicts, overrides, out)
+    with claimed(out, REPRODUCTION):
+        with closing(Journal(out, {"versions": result_versions()})) as journal:
+            run_plans(plans.values(), journal, workers, watcher)
+            rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
+            model = load_experiment(MODEL, overrides)
+            verdicts = reproduce_figure2(model, workload_of(model), out)
+            columns = {name: plan.result_columns for name, plan in plans.items()}
+        return _report(rows, columns, verdicts, overrides, out)
 
 
 def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:

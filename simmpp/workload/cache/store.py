@@ -7,11 +7,9 @@ aligns it; the rest stands as JSON in the schema's metadata.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import os
-import tempfile
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
@@ -24,6 +22,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import cache_folder
 from simmpp.common.errors import WorkloadError
+from simmpp.common.files import replaced
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.check import check
@@ -84,17 +83,13 @@ def save(workload: Workload, path: str | os.PathLike[str]) -> None:
     header["checksum"] = _checksum(header, arrays)
     row = pa.RecordBatch.from_arrays(list(map(_cell, arrays.values())), list(arrays))
     schema = row.schema.with_metadata({HEADER: json.dumps(header)})
-    target = Path(path)
     # Workers may write the same workload at once: each its own file, and the last one stays.
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file, pa.ipc.new_file(file, schema) as writer:
-            writer.write_batch(row.replace_schema_metadata(schema.metadata))
-        os.replace(temporary, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
+    with (
+        replaced(Path(path)) as part,
+        open(part, "wb") as file,
+        pa.ipc.new_file(file, schema) as writer,
+    ):
+        writer.write_batch(row.replace_schema_metadata(schema.metadata))
 
 
 def cached_path(digest: str) -> Path:

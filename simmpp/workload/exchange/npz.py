@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import WorkloadError
+from simmpp.common.files import replaced
 from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Content
 
 RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
@@ -47,7 +48,7 @@ def write(tables: Content, path: Path) -> None:
         named |= {prefix + name: column for name, column in columns.items()}
     if tables.picture is not None:
         named[PICTURE] = tables.picture
-    with open(path, "wb") as file:
+    with replaced(path) as part, open(part, "wb") as file:
         np.savez(file, allow_pickle=False, **named)
 
 

@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 from pyarrow import parquet
 
 from simmpp.common.errors import WorkloadError
+from simmpp.common.files import replaced
 from simmpp.workload.exchange.columns import LONGEST_WORD, MOST_ROWS, CheckedTable, Column, Content
 
 NULL_MEANS_NONE = ("parent", "hit")
@@ -50,8 +51,10 @@ def write(tables: Content, path: Path) -> None:
     rays = pa.table(columns | {"itinerary": pa.LargeListArray.from_arrays(offsets, objects)})
     if tables.picture is not None:
         rays = rays.replace_schema_metadata({PICTURE: " ".join(map(str, tables.picture))})
-    parquet.write_table(pa.table(dict(tables.objects.columns)), objects_path(path))
-    parquet.write_table(rays, path)
+    with replaced(objects_path(path)) as part:
+        parquet.write_table(pa.table(dict(tables.objects.columns)), part)
+    with replaced(path) as part:
+        parquet.write_table(rays, part)
 
 
 def _table(path: Path) -> tuple[CheckedTable, dict[bytes, bytes]]:
