@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -152,11 +153,12 @@ def _print(moved: Sequence[Move], why: Sequence[str]) -> None:
 
 
 def _rounded(line: Mapping[str, str]) -> dict[str, str]:
-    """Profits with as many digits as people read."""
+    """Profits with as many digits as people read; errors, which may hold anything, as they are."""
     cells = dict(line)
     for side in ("baseline", "now"):
-        if "." in cells[side]:
-            cells[side] = f"{float(cells[side]):.5g}"
+        with suppress(ValueError):
+            if "." in cells[side]:
+                cells[side] = f"{float(cells[side]):.5g}"
     return cells
 
 

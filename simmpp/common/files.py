@@ -111,8 +111,8 @@ def write_parquet(rows: Sequence[Row], columns: Sequence[str], path: Path) -> No
     """Write the same as Parquet: int64, float64 or text; what isn't there is null."""
     from pyarrow import parquet
 
-    with replaced(path) as part:
-        parquet.write_table(as_arrow(rows, columns), part)
+    with replaced(path) as part, open(part, "wb") as file:  # pyarrow opens names in UTF-8 only
+        parquet.write_table(as_arrow(rows, columns), file)
 
 
 def as_arrow(rows: Sequence[Row], columns: Sequence[str]) -> pyarrow.Table:

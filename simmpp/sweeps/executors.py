@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
     BrokenExecutor,
@@ -188,6 +189,7 @@ def _let_go(begun: Future[Leashed]) -> None:
 
 def _begin(held: Connection, cache: str) -> None:
     """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
+    warnings.simplefilter("ignore")  # the parent has told them; here they would be told again
     os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(held,), daemon=True).start()

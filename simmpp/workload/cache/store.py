@@ -13,6 +13,7 @@ import os
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import cache_folder
-from simmpp.common.errors import WorkloadError
+from simmpp.common.errors import CacheWarning, WorkloadError
 from simmpp.common.files import replaced
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
@@ -50,7 +51,7 @@ def workload_for(
     that can't be written, which costs only the next run's time.
     """
     check_scene(scene)
-    tell = notice or (lambda text: warnings.warn(text, stacklevel=3))
+    tell = notice or (lambda text: warnings.warn(text, CacheWarning, stacklevel=3))
     digest = digest_of(scene, picture)
     path = cached_path(digest)
     if path.exists():
@@ -104,8 +105,9 @@ def load(path: str | os.PathLike[str]) -> Workload:
     itself.
     """
     try:
-        with pa.memory_map(os.fspath(path)) as file:
-            row = pa.ipc.open_file(file).get_batch(0)  # keeps the pages when the file is shut
+        with open(path, "rb") as file:  # pyarrow itself opens names in UTF-8 only
+            pages = mmap(file.fileno(), 0, access=ACCESS_READ)
+        row = pa.ipc.open_file(pa.py_buffer(pages)).get_batch(0)  # keeps the pages
         row.validate(full=True)  # no array reaches beyond the file
         header = json.loads(row.schema.metadata[HEADER])
         shapes, checksum = header["shapes"], header.pop("checksum")
