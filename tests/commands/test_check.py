@@ -13,6 +13,7 @@ import pytest
 from calls import begin_in, refused, simmpp
 from click.testing import Result
 
+from simmpp.common.errors import SimmppError
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.machine import presets
 from simmpp.policy.parameters import POLICIES
@@ -271,6 +272,20 @@ def test_failed_points_fail_the_check_and_are_no_baseline(monkeypatch: pytest.Mo
     assert "out of memory" in done.stdout
     assert check("--update").exit_code == 1
     assert {path.name: path.read_bytes() for path in Path("b").iterdir()} == before
+
+
+@pytest.mark.parametrize("error", ["a.b failed", "1.5", "nan.", "no"])
+def test_an_error_may_hold_anything(monkeypatch: pytest.MonkeyPatch, error: str) -> None:
+    check("--update")
+
+    def simulate(*_: object, **__: object) -> None:
+        raise SimmppError(error)
+
+    monkeypatch.setattr("simmpp.methods.simulation.simulate", simulate)
+    done = check("--out", "o")
+    assert (done.exit_code, done.exception.__class__) == (1, SystemExit)
+    assert error in done.stdout
+    assert {line["now"] for line in moved("o") if line["measure"] == "error"} == {error}
 
 
 def test_tolerances_that_cannot_be() -> None:
