@@ -34,7 +34,7 @@ def report_command(folder_path: Path, live: bool) -> None:
     if live:
         _follow(folder_path, folder_path / PAGE)
     report = report_of(read_folder(folder_path))
-    options.folder(folder_path, "DIR")
+    options.claim(folder_path / FIGURES_FOLDER, "DIR")  # a sweep may be at work in DIR itself
     page = write_page(report)
     click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
     _draw(report)
@@ -55,7 +55,6 @@ def _follow(folder_path: Path, page: Path) -> None:
 def _draw(report: Report) -> None:
     """The figures as files, with a bar."""
     to = report.folder.path / FIGURES_FOLDER
-    options.folder(to, "DIR")
     plates = sum(len(figure.plates) for figure in report.figures)
     with progress_bars() as bars:
         task = bars.add_task("drawing", total=plates)

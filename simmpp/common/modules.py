@@ -8,5 +8,7 @@ PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
 ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
+SERVED = "SIMMPP_SERVED"
+"""What PRELOAD reads: the variable of the environment with the process that it is imported for."""
 
 NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
+from simmpp.common.files import replaced
 from simmpp.plot.curves import Bars, Curve, Panel, Scale, Stated
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -68,9 +69,11 @@ def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
 def save(figure: Figure, stem: Path) -> list[Path]:
     """Write a figure as ``stem``.png and ``stem``.svg, without dates."""
     png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
-    figure.savefig(png, dpi=DOTS_PER_INCH)
+    with replaced(png) as part:
+        figure.savefig(part, format="png", dpi=DOTS_PER_INCH)
     figure.set_layout_engine("none")  # laid out once; the second file is to be the same
-    figure.savefig(svg, metadata={"Date": None})
+    with replaced(svg) as part:
+        figure.savefig(part, format="svg", metadata={"Date": None})
     return [png, svg]
 
 
