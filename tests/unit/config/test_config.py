@@ -26,8 +26,8 @@ def load(text: str, *overrides: str):  # type: ignore[no-untyped-def]
 
 
 def test_everything_but_the_scene_has_a_default() -> None:
-    assert load("scene: {spd: mountain, size: 5}\n").settings.reading == DEFAULT_READING
-    config = load("scene: {spd: mountain, size: 5}\nreading: plain\n")
+    config = load("scene: {spd: mountain, size: 5}\n")
+    assert config.settings.reading == DEFAULT_READING
     assert config.scene_spec == {"spd": "mountain", "size": 5}
     assert config.picture == Picture()
     assert config.memory == Memory(transient="x")

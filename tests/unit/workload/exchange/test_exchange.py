@@ -82,11 +82,17 @@ def same(a: Workload, b: Workload, *, but: tuple[str, ...] = ()) -> bool:
     return a.picture == b.picture
 
 
+def without_picture(workload: Workload) -> Workload:
+    """The same rays as a list, which is a picture of one column."""
+    return dataclasses.replace(workload, picture=(workload.n_primaries, 1))
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_renderers_tables(tmp_path: Path, suffix: str) -> None:
     workload = import_workload(write(tmp_path / f"forest{suffix}", RAYS, OBJECTS))
     assert workload.name == "forest"
-    assert same(workload, SMALL, but=("object_centroids", "hits", "hit_distances"))
+    expected = without_picture(SMALL)
+    assert same(workload, expected, but=("object_centroids", "hits", "hit_distances"))
     assert workload.hits.tolist() == [-1, 0, 2, -1, -1]  # known of those that spawned others
     assert workload.object_centroids.tolist() == [[0, 0.5, 3], [1, 0.5, 2], [2, 0.5, 1]]
 
@@ -166,7 +172,8 @@ def test_the_order_of_rows_does_not_matter(tmp_path: Path, seed: int) -> None:
         "kind": workload.object_kinds,
         "triangles": workload.object_triangles,
     }
-    assert same(import_workload(write(tmp_path / "a.npz", rays, objects)), workload)
+    imported = import_workload(write(tmp_path / "a.npz", rays, objects))
+    assert same(imported, without_picture(workload))
 
 
 def _depths(workload: Workload) -> list[int]:
