@@ -9,7 +9,8 @@ import click
 
 from simmpp.commands import options
 from simmpp.commands.terminal import output, texts
-from simmpp.config.keys import MACHINE, Key, find_keys, listed_keys
+from simmpp.config.keys import Key, find_keys, listed_keys
+from simmpp.config.reading import MACHINE
 from simmpp.config.schema import json_schema
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
 
@@ -53,7 +54,7 @@ def _print_one(key: Key) -> None:
 
 def _constants(key: Key) -> Iterator[tuple[str, str, str]]:
     """The value and the source of a machine's constant in each preset, the default one first."""
-    constant = key.name.removeprefix(MACHINE)
+    constant = key.name.removeprefix(f"{MACHINE}.")
     for name in sorted(preset_names(), key=lambda preset: preset != DEFAULT_PRESET):
         preset = load_preset(name)
         text = preset.text(constant, key.expect.write)

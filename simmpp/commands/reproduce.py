@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -11,13 +12,16 @@ import click
 from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
 from simmpp.commands.terminal import FAILED, announce_compilation, notice, output, table
-from simmpp.studies.nebel98.reproduce import Reproduction, reproduce
+from simmpp.common.errors import ConfigError
+from simmpp.config.reading import load_reading
+from simmpp.studies.nebel98.reproduce import Reproduction, named, reproduce
 
 
 @click.command(
     "reproduce",
     epilog=options.examples(
-        "simmpp reproduce", "simmpp reproduce --resolution 64 --seeds 2 --out results/look"
+        "simmpp reproduce --reading plain --reading mixed",
+        "simmpp reproduce --resolution 64 --seeds 2 --out results/look",
     ),
 )
 @options.path(
@@ -32,6 +36,13 @@ from simmpp.studies.nebel98.reproduce import Reproduction, reproduce
     metavar="N",
     help="Draws of each point.  [default: the experiments' 8]",
 )
+@click.option(
+    "--reading",
+    "readings",
+    multiple=True,
+    metavar="NAME",
+    help="What the paper is taken to mean (see `simmpp reading`), or a file; repeatable.",
+)
 @options.workers("Processes on this machine.  [default: one for each core]")
 @click.option(
     "--resolution",
@@ -40,32 +51,57 @@ from simmpp.studies.nebel98.reproduce import Reproduction, reproduce
     help="Pixels along each side, for a quick look.  [default: the paper's 512]",
 )
 def reproduce_command(
-    out: Path, seeds: int | None, workers: int | None, resolution: int | None
+    out: Path,
+    seeds: int | None,
+    readings: tuple[str, ...],
+    workers: int | None,
+    resolution: int | None,
 ) -> None:
     """Repeat the experiments of Nebel 1998 and judge its claims.
 
     Writes the rows of each figure (CSV) with the configuration they are of, the figures (PNG and
     SVG) and claims.csv. The same command continues what was interrupted; more seeds, or another
-    resolution, add to what is there. Exits with 1 if a point failed.
+    resolution, add to what is there. With several readings each has its folder in --out, and
+    claims.csv says first which it is of. Exits with 1 if a point failed.
     """
+    _refuse_unknown(readings)
     options.folder(out, "--out")
     announce_compilation()
     began_s = time.monotonic()
     with progress_of_sweep() as watcher:
-        outcome = reproduce(
+        done = reproduce(
             out,
+            readings=readings,
             seeds=seeds,
             resolution=resolution,
             workers=workers or options.available_cores(),
             watcher=watcher,
         )
-    _print(outcome)
+    _print(done)
     click.echo(f"\n{out}: rows, figures and claims.csv, in {time.monotonic() - began_s:.0f} s")
-    sys.exit(FAILED if outcome.failed else 0)
+    sys.exit(FAILED if any(one.failed for one in done) else 0)
 
 
-def _print(outcome: Reproduction) -> None:
+def _refuse_unknown(readings: Sequence[str]) -> None:
+    """Before the folder is made: a mistake in a file is told with its place."""
+    try:
+        for reading in readings:
+            load_reading(reading)
+        named(readings)
+    except ConfigError as error:
+        raise error if error.where else ConfigError(f"--reading: {error.problem}") from None
+
+
+def _print(done: Sequence[Reproduction]) -> None:
+    """The verdicts: of one reading with what was simulated, of several side by side."""
     columns = ("claim", "holds", "simulated")
-    output().print(table([{c: getattr(v, c) for c in columns} for v in outcome.verdicts]))
-    for error in sorted(set(outcome.failed)):
-        notice(f"{outcome.failed.count(error)} points failed: {error}")
+    lines = [{c: getattr(verdict, c) for c in columns} for verdict in done[0].verdicts]
+    if len(done) > 1:
+        lines = [
+            {"claim": verdict.claim, **{one.reading: one.verdicts[n].holds for one in done}}
+            for n, verdict in enumerate(done[0].verdicts)
+        ]
+    output().print(table(lines))
+    failed = [error for one in done for error in one.failed]
+    for error in sorted(set(failed)):
+        notice(f"{failed.count(error)} points failed: {error}")

@@ -99,7 +99,7 @@ class Config:
     @property
     def lines_of_reading(self) -> list[Line]:
         """What the reading sets here, of a configuration that keeps its source."""
-        return lines_used(self.kept_source.data, self.settings.machine, self.reading)
+        return lines_used(self.kept_source.data, self.settings, self.reading)
 
     @property
     def memory(self) -> Memory:

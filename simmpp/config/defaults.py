@@ -7,8 +7,8 @@ from typing import Any
 
 from simmpp.config.axes import SAME
 from simmpp.config.reading import MACHINE, POLICY, Line, Reading
-from simmpp.config.settings import MachineSettings, long_policies
-from simmpp.policy.parameters import DEFAULT_POLICY
+from simmpp.config.settings import Settings, long_policies
+from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, REFERENCE
 
 READING = "reading"
 
@@ -21,9 +21,12 @@ def filled(data: Mapping[str, Any], reading: Reading) -> dict[str, Any]:
     return _filled(data, reading)[0]
 
 
-def lines_used(data: Mapping[str, Any], machine: MachineSettings, reading: Reading) -> list[Line]:
-    """Those of the reading's lines that change what the configuration says."""
-    used = _filled(data, reading)[1]
+def lines_used(data: Mapping[str, Any], settings: Settings, reading: Reading) -> list[Line]:
+    """Those of the reading's lines that say something that the configuration does not."""
+    used, machine = _filled(data, reading)[1], settings.machine
+    unnamed = {REFERENCE, CEILING} - {policy.name for policy in settings.policy}
+    for name in unnamed & reading.policies.keys():  # run to be compared with
+        used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in reading.policies[name])
     if costs := reading.costs.get(machine.preset):
         own = machine.flat()
         left = (costs.written(key) for key in costs.constants.flat() if key not in own)

@@ -18,14 +18,13 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.strict import Expect, Short, expectation, fields_of, inner_class, mark_of
 from simmpp.common.units import shown
 from simmpp.config.overrides import key_path
-from simmpp.config.settings import Settings
+from simmpp.config.reading import MACHINE, POLICY, Reading, load_reading
+from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.constants import CopiesConstants
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset
 
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
 HEADER = "| key | default | takes | unit | meaning |\n|---|---|---|---|---|\n"
-MACHINE = "machine."
-"""What the keys of its constants begin with."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
         if expected is None:
             mapping = "a mapping of the keys below"
             expected = Expect(f"{short.text}, or {mapping}" if short else mapping)
-        default = "" if inner else _default(f"{prefix}{key}", expected, field.get_default())
+        default = "" if inner else default_of(f"{prefix}{key}", expected, field.get_default())
         default = "(required)" if field.is_required() else default
         of_kind = of_one_kind or (cls is CopiesConstants and inner is not None)
         meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
@@ -65,10 +64,27 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
             yield from _within(inner, f"{prefix}{key}.", of_one_kind=of_kind)
 
 
-def _default(name: str, expected: Expect, value: Any) -> str:
+def default_of(name: str, expected: Expect, value: Any, reading: Reading | None = None) -> str:
+    """What a key defaults to; ``value`` is what its field does, where the reading says nothing."""
+    reading = reading or load_reading(DEFAULT_READING)
+    part, _, key = name.partition(".")
+    default = _written(name, expected, value)
+    texts = [str(reading.values.get(part, {}).get(key, default))]
+    if part == POLICY:
+        of_policies = reading.policies.items()
+        texts += [f"{said[key]} for {policy}" for policy, said in of_policies if key in said]
+        texts = [text for text in texts if not text.startswith(f"{default} for ")]
+    costs = reading.costs.get(DEFAULT_PRESET) if part == MACHINE else None
+    if costs and (text := costs.text(key, expected.write)):
+        cost = f"{text} ({DEFAULT_PRESET})"
+        return default if cost == default else f"{cost[:-1]}, reading {reading.name})"
+    return default if texts == [default] else f"{', '.join(texts)} (reading {reading.name})"
+
+
+def _written(name: str, expected: Expect, value: Any) -> str:
     if value is None:
-        preset = load_preset(DEFAULT_PRESET)
-        text = name.startswith(MACHINE) and preset.text(name.removeprefix(MACHINE), expected.write)
+        preset, (part, _, key) = load_preset(DEFAULT_PRESET), name.partition(".")
+        text = part == MACHINE and preset.text(key, expected.write)
         return f"{text} ({DEFAULT_PRESET})" if text else "none"
     if isinstance(value, Fraction):
         return f"{float(value):.0%}"

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import as_file, files
+from os.path import isfile
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -104,7 +105,7 @@ def load_reading(name: str, folder: Path = Path()) -> Reading:
     if name in reading_names():
         return _reading(name, *_of_package(name))
     path = folder / name
-    if not name.endswith(_SUFFIXES) or not path.is_file():
+    if not name.endswith(_SUFFIXES) or not isfile(path):
         names = in_words(tuple(reading_names()))
         raise ConfigError(f"value {shown(name)}: expected {names}, or a file .yaml that exists")
     return _reading(name, yaml_text(path), str(path))
@@ -172,10 +173,14 @@ def _refuse_choices(cited: Cited, places: Mapping[KeyPath, Place]) -> None:
             raise misplaced(path[:3], "expected none: readings do not set it", places)
 
 
-def _with_names(values: Mapping[str, Any]) -> dict[str, Any]:
+def _with_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """The values, with each policy's name where ``structure`` looks for it."""
-    policies = values.get(POLICY, {})
-    named = {name: {"name": name, **given} for name, given in policies.items()}
+    if not isinstance(policies := values.get(POLICY), dict):
+        return values
+    named = {
+        name: {"name": name, **given} if isinstance(given, dict) else given
+        for name, given in policies.items()
+    }
     return {**values, POLICY: named}
 
 

@@ -8,14 +8,27 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from simmpp.config.axes import MOST_VALUES, NAME, POINTS, UNSWEPT
 from simmpp.config.keys import keys
-from simmpp.config.settings import Settings
+from simmpp.config.reading import MACHINE, Reading, load_reading
+from simmpp.config.settings import DEFAULT_READING, Settings
 
 
 def json_schema() -> dict[str, Any]:
     """The schema (draft 2020-12); what it accepts may still be refused for values that disagree."""
     schema = _tidy(Settings.model_json_schema())
     schema["properties"]["sweep"] |= _sweep()
+    _drop_defaults(schema, load_reading(DEFAULT_READING))
     return {"$schema": GenerateJsonSchema.schema_dialect, "title": "simmpp", **schema}
+
+
+def _drop_defaults(schema: dict[str, Any], reading: Reading) -> None:
+    """Those that the reading has otherwise: that policies differ in one no schema can say."""
+    for line in reading.lines:
+        part, *_, key = line.key.split(".")
+        if part != MACHINE:
+            _, _, holder, _, key = keys()[f"{part}.{key}"].pointer.split("/")
+            described = schema["$defs"][holder]["properties"][key]
+            if str(described.get("default")) != line.value:
+                described.pop("default", None)
 
 
 def _tidy(node: Any) -> Any:

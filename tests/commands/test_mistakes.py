@@ -25,6 +25,10 @@ MISTAKES = [
         "run c.yaml --set processors=0",
         "--set processors: value 0: expected an integer from 1 to 65536",
     ),
+    (
+        "run c.yaml --set reading=x",
+        "--set reading: value 'x': expected mixed or plain, or a file .yaml that exists",
+    ),
     ("run none.yaml", "none.yaml: can't read the file: No such file or directory"),
     ("run ''", f"CONFIG: value '': {A_NAME}"),
     ("run c.yaml --engine x", "--engine: value 'x': expected compiled or simpy"),
@@ -99,6 +103,18 @@ MISTAKES = [
     ("bench c.yaml --seeds 3", "--seeds: value '3': expected an integer from 4 to 10000"),
     ("report none", "DIR: value 'none': expected a folder"),
     ("compare none none", "BEFORE: value 'none': expected a folder"),
+    (
+        "reproduce --reading x",
+        "--reading: value 'x': expected mixed or plain, or a file .yaml that exists",
+    ),
+    (
+        "reproduce --reading plain --reading plain",
+        "--reading: two readings are called 'plain': expected different names",
+    ),
+    (
+        "reproduce --reading c.yaml",
+        "c.yaml: expected a text description, and what the reading sets",
+    ),
     ("reproduce --resolution 0", "--resolution: value '0': expected an integer from 1 to 16384"),
     ("scene tetra:0", "scene.size: value 0: expected an integer from 1 to what the scene can have"),
     ("scene none.nff", "none.nff: can't read the file: No such file or directory"),

@@ -33,7 +33,7 @@ WORDS = st.sampled_from(
         "a.parquet", "w.npz", "\"\\0\"", "\"\\n\"", "\"\\u2028\"", "é", "💥", "&a 1", "*a", "!!int 3", "!x y",
         "? a", "- a", "[", "]", "{", "}", "a: b: c", "|", ">", "# x", "'", "%YAML 1.1", "---", "...", "\t",
         "[]", "{}", "[[]]", "{a: 1}", "[1, 1]", "[0, 1]", "[1, 1, 4]", "{refresh: 5 ms}", "{clusters: 3}",
-        "{cells: 3}", "{cells: 0}", "x", "rows", "5%",
+        "{cells: 3}", "{cells: 0}", "x", "rows", "5%", "plain", "mixed", "c.yaml", "no.yaml",
     ]
 )  # fmt: skip
 KEYS = st.sampled_from(
@@ -43,7 +43,7 @@ KEYS = st.sampled_from(
         "latency", "header_bytes", "processors", "memory", "fraction", "bytes", "residents", "transient",
         "placement", "owners", "pixels", "policy", "name", "label", "min_load", "batch", "ask_at_least",
         "load_info", "refresh", "merge_requests", "seeds", "tolerance", "max_seeds", "method", "engine",
-        "sweep", "points", "check", "time_profit", "memory.fraction", "machine.test.sphere", "ready_order",
+        "sweep", "points", "check", "time_profit", "memory.fraction", "machine.test.sphere", "ready_order", "reading",
     ]
 )  # fmt: skip
 TOKENS = NUMBERS | QUANTITIES | WORDS | KEYS
@@ -86,7 +86,8 @@ SETS = st.sampled_from(
         "memory.bytes", "memory.transient", "machine.latency", "machine.test", "machine.test.sphere",
         "machine.shape", "machine.pack.rays.bandwidth", "machine.quantum", "policy", "policy.batch",
         "policy.min_load", "policy.load_info", "seeds", "engine", "method", "sweep", "sweep.processors",
-        "check.time_profit", "tolerance", "ready_order", "placement.owners", "placement.pixels",
+        "check.time_profit", "tolerance", "ready_order", "placement.owners", "placement.pixels", "reading",
+        "sweep.reading",
     ]
 )  # fmt: skip
 
@@ -136,3 +137,26 @@ def test_any_bytes_for_a_configuration(data: st.DataObject) -> None:
 def test_any_override(key: str, value: str) -> None:
     Path("c.yaml").write_text(written(BASES[1]))
     runs_or_is_refused(f"{key}={value}")
+
+
+READING = (
+    ("description", "one"),
+    ("based_on", "mixed"),
+    ("placement", (("pixels", (("value", "tiles"), ("source", "one"))),)),
+    ("policy", (("object", (("batch", (("value", "3"), ("source", "one"))),)),)),
+    (
+        "machine",
+        (("t3e", (("pack", (("rays", (("fixed", (("value", "1 us"), ("source", "one"))),)),)),)),),
+    ),
+)  # fmt: skip
+
+
+@examples(60)
+@given(data=st.data())
+def test_readings_with_something_changed(data: st.DataObject) -> None:
+    tree: Any = READING
+    for _ in range(data.draw(st.integers(0, 3))):
+        tree = mutated(data, tree, TREES | st.sampled_from(READING).map(lambda pair: (pair,)))
+    Path("own.yaml").write_bytes(damaged(data, written(tree).encode(), most=1))
+    Path("c.yaml").write_text(written(BASES[0]))
+    runs_or_is_refused("reading=own.yaml")

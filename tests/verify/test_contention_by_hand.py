@@ -46,6 +46,31 @@ def test_messages_of_a_pair_follow_one_another(implementation: str) -> None:
     assert outcome.events == len(outcome.arrivals) + len(outcome.activities)
 
 
+def test_a_packed_message_keeps_links_busy_for_all_its_bytes(implementation: str) -> None:
+    # A ring of 3, half a byte per ps. PE 0 at 1 asks PE 1 for objects 1 and 2: 10 + 2 + 2, to 15;
+    # two requests and a header of 4 take 40. Then PE 2 for object 3, to 27; that takes 24
+    # PE 1  injection 15 to 55, link from 115, ejection from 145: arrives at 185; received 217,
+    #       answered 10 + (3+50) + (3+30) = 96, to 313; injection 313, link 413, ejection 443: below
+    # PE 2  injection from 55, link from 155, ejection from 185: arrives at 209; received 235,
+    #       answered 278; injection 278, link 378, ejection 408, for 68: arrives at 476
+    # PE 1  so its answer gets the ejection port at 476, for 2 (50 + 30 + 4) = 168: arrives at 644
+    case = case_of(
+        replace(OBJECT, packing="requests"),
+        [(0, [1]), (0, [2]), (0, [3])],
+        owners=(0, 1, 1, 2),
+        object_bytes=(40, 50, 30, 30),
+        shape=(3, 1, 1),
+        contention=LINKS,
+        link_bytes_per_s=BYTE_PER_PS // 2,
+    )
+    assert run(implementation, case).arrivals == [
+        (185, 1, 0, 0, "request", 16),
+        (209, 2, 0, 1, "request", 8),
+        (476, 0, 2, 0, "object", 30),
+        (644, 0, 1, 0, "object", 80),
+    ]
+
+
 def test_two_messages_share_a_link(implementation: str) -> None:
     # Ring of 4; ways of two links go towards +. Half a byte per ps: requests take 24, objects 108.
     # Both requests depart at 13.

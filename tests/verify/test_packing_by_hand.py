@@ -304,3 +304,22 @@ def test_a_load_is_refreshed_after_the_messages(implementation: str, packing: st
     ]
     assert outcome.messages_by_kind == (1, 1, 0, 1)
     assert outcome.parts_by_kind == (2, 2, 0, 1)
+
+
+@pytest.mark.parametrize("merged", [True, False])
+def test_a_thousand_parts(implementation: str, merged: bool) -> None:
+    # Each of n rays wants an object of its own or, unmerged, asks for the same one
+    n = 1000
+    policy = replace(PACKS, merge_requests=merged)
+    rays = [(0, [1 + ray * merged]) for ray in range(n)]
+    owners = (0, *[1] * (n if merged else 1))
+    case = case_of(policy, rays, owners=owners, object_bytes=(40, *[50] * (len(owners) - 1)))
+    outcome = run(implementation, case)
+    asking = 1 + (10 + 2 * n) + (130 + 8 * n + 4)
+    answering = (20 + 6 * n) + (10 + (3 + 50) * n) + (130 + 50 * n + 4)
+    testing = (20 + (7 + 50) * n) + n // 4 + (1000 + 500) * n
+    assert outcome.makespan_ps == asking + answering + testing
+    assert outcome.messages_by_kind == (1, 1, 0, 0)
+    assert outcome.parts_by_kind == (n, n, 0, 0)
+    assert outcome.peak_bytes == 40 + 50 * (n if merged else 1) + 10 * n
+    assert outcome.ray_hops == [2] * n

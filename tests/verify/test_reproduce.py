@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.config.config import load_config
-from simmpp.policy.parameters import PolicyParameters
+from simmpp.config.settings import DEFAULT_READING
 from simmpp.studies.nebel98.claims import judge
 from simmpp.studies.nebel98.evidence import Evidence
 from simmpp.studies.nebel98.figures import FIGURES, PERCENT
@@ -37,7 +38,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def done(out: Path) -> Reproduction:
-    return reproduce(out, seeds=1, resolution=16)
+    (done,) = reproduce(out, seeds=1, resolution=16)
+    return done
 
 
 def rows_of(path: Path) -> list[Row]:
@@ -110,21 +112,59 @@ def test_again_nothing_is_simulated_and_all_bytes_are_the_same(
     done: Reproduction, out: Path
 ) -> None:
     before = {path.name: path.read_bytes() for path in out.iterdir()}
-    assert reproduce(out, seeds=1, resolution=16, watcher=Idle()) == done
+    assert reproduce(out, seeds=1, resolution=16, watcher=Idle()) == [done]
     assert before == {path.name: path.read_bytes() for path in out.iterdir()}
+
+
+def test_each_reading_has_its_folder_and_its_claims(
+    done: Reproduction, out: Path, tmp_path: Path
+) -> None:
+    same = tmp_path / "same.yaml"
+    same.write_text(f"description: the default under another name\nbased_on: {DEFAULT_READING}\n")
+    of_default = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+    readings = [DEFAULT_READING, str(same)]
+    of_both = reproduce(out, readings=readings, seeds=1, resolution=16, watcher=Idle())
+    assert [one.reading for one in of_both] == [DEFAULT_READING, "same"]
+    assert [one.verdicts for one in of_both] == [done.verdicts] * 2
+
+    claims = (out / "claims.csv").read_text().splitlines()
+    before = of_default["claims.csv"].decode().splitlines()
+    assert claims[0] == f"reading,{before[0]}"
+    assert claims[1:] == [f"{name},{ln}" for name in (DEFAULT_READING, "same") for ln in before[1:]]
+    for name in (DEFAULT_READING, "same"):
+        folder = out / name
+        written = {path.name for path in folder.iterdir()}
+        assert written == {file for file in of_default if not file.startswith("points")}
+        own = (folder / "claims.csv").read_text().splitlines()
+        assert own == [claims[0], *(ln for ln in claims[1:] if ln.startswith(f"{name},"))]
+        for figure in (*EXPERIMENTS, MODEL):
+            assert (folder / f"{figure}.csv").read_bytes() == of_default[f"{figure}.csv"]
+        said = (folder / "figure3.yaml").read_text().partition("\n")[0]
+        assert said.endswith(f"--set 'reading={same if name == 'same' else name}'")
+    for figure in (*FIGURES, MODEL):
+        drawn = (out / DEFAULT_READING / f"{figure}.svg").read_bytes()
+        assert drawn == of_default[f"{figure}.svg"]
+    assert "reading same" in (out / "same" / "figure4.svg").read_text()
+
+
+def test_two_readings_of_one_name_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="two readings are called 'plain'"):
+        reproduce(tmp_path / "out", readings=["plain", "sub/plain.yaml"])
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])
 def test_experiments_have_eight_seeds_and_nothing_of_their_own(name: str, tmp_path: Path) -> None:
     path = tmp_path / "experiment.yaml"
     path.write_text(configuration(name), encoding="utf-8")
-    settings = load_config(path).settings
+    config = load_config(path)
+    settings = config.settings
     assert name == MODEL or settings.seeds == tuple(range(8))
-    assert settings.model_fields_set <= {
+    assert config.kept_source.data.keys() <= {
         "scene", "picture", "machine", "processors", "policy", "seeds", "sweep", "method"
     }  # fmt: skip
     assert settings.machine.model_fields_set == {"preset"}
-    assert all(policy == PolicyParameters(policy.name) for policy in settings.policy)
+    assert all(policy == config.reading.policy(policy.name) for policy in settings.policy)
 
 
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])

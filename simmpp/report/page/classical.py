@@ -17,7 +17,6 @@ from simmpp.common.files import Row
 from simmpp.common.units import share
 from simmpp.methods.columns import PLACE
 from simmpp.placement.placement import AS_FRACTION
-from simmpp.policy.parameters import CLASSICAL
 from simmpp.report.page.contest import makespan_ratios, means, replicated_policies
 from simmpp.report.page.points import Points
 from simmpp.report.page.words import is_number
@@ -61,9 +60,9 @@ def _groups(points: Points) -> Iterator[tuple[list[int], list[list[int]]]]:
         others: dict[tuple[object, ...], list[int]] = {}
         for number in group:
             row = points.profits[number]
-            if row["policy"] not in {*CLASSICAL, *replicated}:
+            if row["policy"] not in points.classical | replicated:
                 others.setdefault((row["policy"], row.get(KEPT)), []).append(number)
-        classical = [n for n in group if points.profits[n]["policy"] in CLASSICAL]
+        classical = [n for n in group if points.profits[n]["policy"] in points.classical]
         yield classical, list(others.values())
 
 

@@ -133,10 +133,10 @@ def _classical(points: Points) -> Iterator[str]:
             where, end = f"{which} ({how})" if how else which, ""
         else:
             at = "; ".join(f"{way} at {number}" for way, number in ways.most_common())
-            over = f", over {' and '.join(free)}" if free else ""
-            where, end = f"{at} of {len(duels)} places{over}", f", and less at {beaten or 'none'}"
+            over = f" (over {', '.join(free)})" if free else ""
+            where, end = f"{at} of {len(duels)} places{over}", f" (less at {beaten or 'none'})"
         yield (
-            f"Under the memory of {flow} the best classical way is {where}: "
+            f"With no more memory than {flow} the best classical way is {where}: "
             f"{flow} takes {times} times as long{end}."
         )
 

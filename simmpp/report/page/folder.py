@@ -58,6 +58,11 @@ class Folder:
         return points if isinstance(points, int) else len(self.rows)
 
     @property
+    def labels(self) -> dict[str, str]:
+        """The policy of each label, as far as the record's configuration tells."""
+        return dict(_labelled(self.record.get("config")))
+
+    @property
     def failed(self) -> list[Row]:
         """Rows with an error in place of results."""
         return [row for row in self.rows if row["error"]]
@@ -88,6 +93,18 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
             f"sweep), {EXPERIMENTS[0]}.csv (of reproduce) or {BENCH} (of bench)"
         )
     return Folder(path, _once(experiments), (), experiments, claims, timings, (), bench, record)
+
+
+def _labelled(node: object) -> Iterator[tuple[str, str]]:
+    """Label and name of each policy in a configuration, those of its sweep included."""
+    if isinstance(node, Mapping):
+        label, name = node.get("label"), node.get("name")
+        if isinstance(label, str) and isinstance(name, str):
+            yield label, name
+        node = list(node.values())
+    if isinstance(node, list):
+        for child in node:
+            yield from _labelled(child)
 
 
 def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:

@@ -9,7 +9,7 @@ from statistics import fmean
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import PLACE
-from simmpp.policy.parameters import REFERENCE
+from simmpp.policy.parameters import CLASSICAL, REFERENCE
 from simmpp.report.page.arrangement import varying_axes
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order
@@ -18,6 +18,9 @@ ACCOUNTS = {account: f"{account}_ps" for account in ("compute", "communication",
 """What PEs spend their time with, and its column."""
 KINDS = {f"{kind}s": f"{kind}_messages" for kind in ("request", "object", "ray", "load")}
 """Messages by kind, and their columns."""
+
+
+NO_LABELS: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,8 @@ class Points:
     groups: list[int]
     """Number of its place: what all policies there have in common."""
     further: tuple[str, ...]
+    classical: frozenset[str] = frozenset(CLASSICAL)
+    """Titles of the classical dataflows."""
 
     @cached_property
     def runs(self) -> list[list[Row]]:
@@ -69,8 +74,13 @@ class Points:
         return bool(runs) and all(row[column] != "" for column in columns for row in runs)
 
 
-def points_of(rows: Sequence[Row], further: tuple[str, ...], known: Sequence[Row] = ()) -> Points:
-    """Put the rows of each point together.
+def points_of(
+    rows: Sequence[Row],
+    further: tuple[str, ...],
+    known: Sequence[Row] = (),
+    labels: Mapping[str, str] = NO_LABELS,
+) -> Points:
+    """Put the rows of each point together; ``labels`` name the policy of each label.
 
     ``known`` are profits of ``profits.csv``, and taken as they are: only who wrote them knows by
     which rule sweeps stopped. They are computed here for places where there are none, or none of
@@ -95,7 +105,8 @@ def points_of(rows: Sequence[Row], further: tuple[str, ...], known: Sequence[Row
         place = tuple(profit[name] for name in names)
         groups.append(numbers.setdefault(place, len(numbers)))
         seeds.append(finished(places[place][profit["policy"]]))
-    return Points(profits, seeds, groups, further)
+    classical = {*CLASSICAL, *(label for label, name in labels.items() if name in CLASSICAL)}
+    return Points(profits, seeds, groups, further, frozenset(classical))
 
 
 def _counts(policies: Mapping[str, Seeds]) -> dict[str, int]:

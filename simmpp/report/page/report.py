@@ -48,7 +48,7 @@ class Report:
 
 def report_of(folder: Folder) -> Report:
     """Work out what the rows of a folder show."""
-    points = points_of(folder.rows, folder.further, folder.profits)
+    points = points_of(folder.rows, folder.further, folder.profits, folder.labels)
     has_runs = any(points.runs)
     figures = {
         group: list(group.figures(folder, points))

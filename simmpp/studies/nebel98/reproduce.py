@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.resources import as_file, files
+from itertools import chain
 from pathlib import Path
 
-from simmpp.common.files import Row, write_csv, write_text
+from simmpp.common.errors import ConfigError
+from simmpp.common.files import write_csv, write_text
 from simmpp.common.folders import REPRODUCTION, claimed
 from simmpp.config.config import Config, load_config
+from simmpp.config.defaults import READING
+from simmpp.config.settings import DEFAULT_READING
+from simmpp.plot.curves import Panel
 from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
 from simmpp.run.provenance import all_versions, result_versions
@@ -22,7 +27,7 @@ from simmpp.studies.nebel98.figure2 import reproduce_figure2
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS, Verdict
 from simmpp.sweeps.journal import Journal
-from simmpp.sweeps.plan import plan_of
+from simmpp.sweeps.plan import Plan, plan_of
 from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher, run_plans
 
@@ -31,13 +36,17 @@ EXPERIMENTS = ("figure3", "figure4", "figure6", "figure6-1024", "rings7")
 MODEL = "figure2"
 """Likewise, of the analytical model."""
 CLAIMS = "claims.csv"
+TEXT_ALONE = "plain"
+"""The reading whose figures do not name it."""
 _FOLDER = files("simmpp") / "studies" / "nebel98"
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came out."""
+    """What came out with one reading."""
 
+    reading: str
+    """Its name; of a file's, without the folder and the suffix."""
     verdicts: list[Verdict]
     failed: list[str]
     """The error of each row that has one."""
@@ -51,28 +60,54 @@ def configuration(name: str) -> str:
 def reproduce(
     out: Path,
     *,
+    readings: Sequence[str] = (),
     seeds: int | None = None,
     resolution: int | None = None,
     workers: int = 1,
     watcher: Watcher | None = None,
-) -> Reproduction:
+) -> list[Reproduction]:
     """Simulate what isn't simulated yet in the folder ``out``; write everything there.
 
-    ``seeds`` (their number) and ``resolution`` (pixels along each side) take the place of those of
-    the experiments. A point that several experiments have is simulated once, and kept in ``out``
-    whatever the seeds and the resolution of the next call are.
+    With several ``readings`` each has a folder in it, and the claims of all are in ``out``; without
+    any it is the default one. ``seeds`` (their number) and ``resolution`` (pixels along each side)
+    take the place of those of the experiments. A point that several experiments have is simulated
+    once, and kept in ``out`` whatever the seeds and the resolution of the next call are.
     Raises ConfigError if the folder holds results of other versions.
     """
-    overrides = _overrides(seeds, resolution)
-    plans = {name: plan_of(load_experiment(name, overrides)) for name in EXPERIMENTS}
+    common = _overrides(seeds, resolution)
+    overrides = {name: (*common, f"{READING}={said}") for name, said in named(readings).items()}
+    overrides = overrides or {DEFAULT_READING: common}
+    plans = {
+        name: {experiment: plan_of(load_experiment(experiment, own)) for experiment in EXPERIMENTS}
+        for name, own in overrides.items()
+    }
+    folders = {name: out / name if len(plans) > 1 else out for name in plans}
     with claimed(out, REPRODUCTION):
+        for folder in folders.values():
+            folder.mkdir(exist_ok=True)
         with closing(Journal(out, {"versions": result_versions()})) as journal:
-            run_plans(plans.values(), journal, workers, watcher)
-            rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
-            model = load_experiment(MODEL, overrides)
-            verdicts = reproduce_figure2(model, workload_of(model), out)
-            columns = {name: plan.result_columns for name, plan in plans.items()}
-        return _report(rows, columns, verdicts, overrides, out)
+            run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
+            done = [
+                _report(name, plans[name], journal, own, folders[name])
+                for name, own in overrides.items()
+            ]
+        for one in done:
+            _write_claims([one], folders[one.reading], with_reading=bool(readings))
+        if len(done) > 1:
+            _write_claims(done, out, with_reading=True)
+    return done
+
+
+def named(readings: Sequence[str]) -> dict[str, str]:
+    """Readings by the names that their folders have, and they in tables.
+
+    Raises ConfigError for two of one name.
+    """
+    names = [Path(reading).stem for reading in readings]
+    for name in names:
+        if names.count(name) > 1:
+            raise ConfigError(f"two readings are called {name!r}: expected different names")
+    return dict(zip(names, readings, strict=True))
 
 
 def _overrides(seeds: int | None, resolution: int | None) -> tuple[str, ...]:
@@ -88,25 +123,38 @@ def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
 
 
 def _report(
-    rows: Mapping[str, list[Row]],
-    columns: Mapping[str, Sequence[str]],
-    verdicts: list[Verdict],
-    overrides: Sequence[str],
-    out: Path,
+    reading: str, plans: Mapping[str, Plan], journal: Journal, overrides: Sequence[str], out: Path
 ) -> Reproduction:
-    """Write configurations, rows, figures, claims and the record; ``verdicts`` are the model's."""
-    for name in (MODEL, *rows):
+    """Write configurations, rows, figures and the record of one reading."""
+    for name in (MODEL, *plans):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
+    rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
     for name, table in rows.items():
-        write_csv(table, columns[name], out / f"{name}.csv")
+        write_csv(table, plans[name].result_columns, out / f"{name}.csv")
     measured = {name: RowIndex(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
-        draw(panels(measured[name]), out / figure)
+        draw(_of_reading(panels(measured[name]), reading), out / figure)
+    model = load_experiment(MODEL, overrides)
+    verdicts = reproduce_figure2(model, workload_of(model), out)
     verdicts += judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
-    write_csv([asdict(verdict) for verdict in verdicts], CLAIM_COLUMNS, out / CLAIMS)
-    write_record({"set": list(overrides), "versions": all_versions()}, out / RECORD)
+    facts = {"set": list(overrides), READING: reading, "versions": all_versions()}
+    write_record(facts, out / RECORD)
     errors = [row["error"] for table in rows.values() for row in table if row["error"]]
-    return Reproduction(verdicts, errors)
+    return Reproduction(reading, verdicts, errors)
+
+
+def _of_reading(panels: list[Panel], reading: str) -> list[Panel]:
+    """The panels with a word on what they are of; the text of the paper alone needs none."""
+    if reading == TEXT_ALONE:
+        return panels
+    return [replace(panel, note=f"{panel.note}; reading {reading}") for panel in panels]
+
+
+def _write_claims(done: Sequence[Reproduction], out: Path, *, with_reading: bool) -> None:
+    """Write ``claims.csv``; which reading a verdict is of stands first, if any was asked for."""
+    rows = [{READING: one.reading, **asdict(each)} for one in done for each in one.verdicts]
+    columns = (READING, *CLAIM_COLUMNS) if with_reading else CLAIM_COLUMNS
+    write_csv(rows, columns, out / CLAIMS)
 
 
 def _said(overrides: Sequence[str]) -> str:

@@ -137,9 +137,9 @@ def _objects_of(table: CheckedTable) -> dict[str, NDArray[Any]]:
 
 
 def _picture(tables: Content, n_primaries: int) -> tuple[int, int]:
-    """Rows and columns of primary rays."""
+    """Rows and columns of primary rays; a list of rays is a picture that is one ray wide."""
     if tables.picture is None:
-        return 1, n_primaries
+        return n_primaries, 1
     sides = tables.picture
     whole = sides.dtype.kind in "iu" and sides.shape == (2,) and (sides > 0).all()
     rows, columns = (int(side) for side in sides) if whole else (0, 0)

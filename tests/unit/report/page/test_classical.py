@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_rows import failed, row
+from sweep_rows import failed, row, written
 
 from simmpp.common.files import Row
 from simmpp.report.page.classical import duels_of
 from simmpp.report.page.findings import sentences
+from simmpp.report.page.folder import read_folder
 from simmpp.report.page.points import Points, points_of
+from simmpp.report.page.report import report_of
 
 
 def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
@@ -28,7 +32,7 @@ def duels(rows: list[Row], *further: str) -> list[tuple[Any, ...]]:
 
 
 def told(points: Points) -> list[str]:
-    return [text for text in sentences(points) if text.startswith("Under the memory of ")]
+    return [text for text in sentences(points) if text.startswith("With no more memory than ")]
 
 
 def test_the_faster_classical_dataflow_of_each_place() -> None:
@@ -40,9 +44,9 @@ def test_the_faster_classical_dataflow_of_each_place() -> None:
         rows += timed("replicated", 10, 10, fraction=x)
     assert duels(rows) == [(("ray",), ("concurrent",), 2.0), (("object",), ("concurrent",), 1.0)]
     assert told(points_of(rows, ())) == [
-        "Under the memory of concurrent dataflow the best classical way is ray dataflow at 1; "
-        "object dataflow at 1 of 2 places: concurrent dataflow takes 1 to 2 times as long, and "
-        "less at none."
+        "With no more memory than concurrent dataflow the best classical way is ray dataflow at 1; "
+        "object dataflow at 1 of 2 places: concurrent dataflow takes 1 to 2 times as long (less at "
+        "none)."
     ]
 
 
@@ -51,7 +55,7 @@ def test_the_ratio_is_the_mean_of_the_seeds_own() -> None:
     assert duels(rows) == [(("object",), ("concurrent",), 1.25)]
     (text,) = told(points_of(rows, ()))
     assert text == (
-        "Under the memory of concurrent dataflow the best classical way is object dataflow: "
+        "With no more memory than concurrent dataflow the best classical way is object dataflow: "
         "concurrent dataflow takes 1.25 times as long."
     )
 
@@ -75,7 +79,7 @@ def test_each_side_has_its_best_way_to_deal() -> None:
     ]
     (text,) = told(points_of(rows, (pixels, residents)))
     assert text == (
-        "Under the memory of concurrent dataflow the best classical way is ray dataflow "
+        "With no more memory than concurrent dataflow the best classical way is ray dataflow "
         "(placement.pixels blocks, memory.residents hot): concurrent dataflow takes 1.5 times as "
         "long."
     )
@@ -126,9 +130,16 @@ def test_residents_in_bytes_are_kept_as_many_as_there_are() -> None:
     ]
     (text,) = told(points_of(rows, (kept, room)))
     assert text.endswith(
-        "object dataflow at 2 of 2 places, over memory.transient: concurrent dataflow takes 0.75 "
-        "to 1.5 times as long, and less at 1."
+        "object dataflow at 2 of 2 places (over memory.transient): concurrent dataflow takes 0.75 "
+        "to 1.5 times as long (less at 1)."
     )
+
+
+def test_as_many_as_are_resident_in_bytes_are_no_share() -> None:
+    kept = "memory.transient"
+    for classical, other in (("x", "5%"), ("5%", "x"), ("x", 3)):
+        rows = timed("object", 200, fraction="", **{kept: classical})
+        assert duels(rows + timed("concurrent", 300, fraction="", **{kept: other}), kept) == []
 
 
 def test_other_memory_other_scenes_and_other_methods_are_not_compared() -> None:
@@ -144,3 +155,21 @@ def test_nothing_is_told_without_a_result_or_another_dataflow() -> None:
     assert told(points_of([*classical, failed("concurrent")], ())) == []
     apart = [*timed("object", 100), failed("object", 1), failed("concurrent"), row("concurrent", 1)]
     assert told(points_of(apart, ())) == []
+
+
+POLICIES: list[dict[str, Any]] = [
+    {"policy": [{"name": "object", "label": "keen"}, {"name": "concurrent", "label": "eager"}]},
+    {"sweep": {"policy": [{"name": "object", "label": "keen"}, ["ray", {"label": "eager"}]]}},
+    {"sweep": {"points": [{"name": "a", "policy": {"name": "object", "label": "keen"}}]}},
+]
+
+
+@pytest.mark.parametrize("config", POLICIES)
+def test_a_labelled_policy_is_what_the_record_says(tmp_path: Path, config: dict[str, Any]) -> None:
+    rows = timed("object", 300) + timed("ray", 200) + timed("keen", 100) + timed("eager", 150)
+    written(tmp_path, rows)
+    (tmp_path / "run.json").write_text(json.dumps({"config": config}))
+    assert told(report_of(read_folder(tmp_path)).points) == [
+        "With no more memory than eager the best classical way is keen: eager takes 1.5 times as "
+        "long."
+    ]

@@ -95,7 +95,7 @@ def test_a_renderers_tables(tmp_path: Path, suffix: str) -> None:
 def test_defaults(tmp_path: Path, suffix: str) -> None:
     rays = {"itinerary": [[0], [1, 0]]}
     workload = import_workload(write(tmp_path / f"a{suffix}", rays, {"bytes": [7, 8]}))
-    assert workload.picture == (1, 2)
+    assert workload.picture == (2, 1)
     assert workload.object_kinds.tolist() == [MESH, MESH]
     assert workload.object_triangles.tolist() == [0, 0]
     assert not workload.object_centroids.any()
