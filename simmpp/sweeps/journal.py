@@ -97,7 +97,8 @@ class Journal(Results):
 
     def close(self) -> None:
         """Nothing is added from now on."""
-        self._file.close()
+        with naming(self.path):  # what a full disk did not take is tried once more
+            self._file.close()
 
     def _append(self, entry: Mapping[str, Any]) -> None:
         with naming(self.path):

@@ -16,6 +16,7 @@ from sweep_rows import row, written
 
 from simmpp.common.files import write_csv
 from simmpp.common.folders import BENCH, MARK, RUN, SWEEP, held
+from simmpp.report.run_figures.recorder import FiguresRecorder
 
 resource = pytest.importorskip("resource")  # no such limits on Windows
 
@@ -68,7 +69,7 @@ def test_no_command_writes_over_what_another_has_written(
     command: tuple[str, ...], is_marked: bool
 ) -> None:
     if command[0] == "check":
-        assert simmpp(*command[:-2], "b", "--update").exit_code == 0
+        assert simmpp(*command[:-1], "--update").exit_code == 0
     folder, other = Path("o"), RUN if command[0] in ("sweep", "bench") else SWEEP
     folder.mkdir()
     (folder / "results.csv").write_text("theirs")
@@ -83,7 +84,7 @@ def test_no_command_writes_over_what_another_has_written(
 @pytest.mark.parametrize("command", [*INTO_A_FOLDER, ("report",)], ids=lambda command: command[0])
 def test_two_at_once_are_refused(command: tuple[str, ...]) -> None:
     if command[0] == "check":
-        assert simmpp(*command[:-2], "b", "--update").exit_code == 0
+        assert simmpp(*command[:-1], "--update").exit_code == 0
     folder = written(Path("o"), [row(), row("ray")]) if command[0] == "report" else Path("o")
     with held(folder / "figures" if command[0] == "report" else folder):
         before = content(folder)
@@ -107,7 +108,8 @@ def test_a_run_does_not_end_up_in_a_sweep_nor_a_sweep_in_a_run() -> None:
         assert not list(Path(folder).glob("*.lock")) and not list(Path(folder).glob(".*.lock"))
 
 
-def test_pictures_may_lie_beside_the_rows_of_the_same_run() -> None:
+def test_pictures_may_lie_beside_the_rows_of_the_same_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FiguresRecorder, "end", lambda *_: None)  # drawing takes its time
     for out in ("o", "p"):
         assert simmpp("run", "c.yaml", "--out", "o", "--figures", out).exit_code == 0
 
