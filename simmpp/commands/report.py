@@ -48,11 +48,14 @@ def report_command(folder_path: Path, names: tuple[str, ...], live: bool) -> Non
         _follow(folder_path, folder_path / PAGE)
     report = report_of(read_folder(folder_path))
     stills = stills_of(report.figures, names)
+    to = folder_path / FIGURES_FOLDER
+    if stills:
+        options.claim(to, "DIR")  # a sweep may be at work in DIR itself
     options.folder(folder_path, "DIR")
     page = write_page(report, stills=[still.stem for still in stills])
     click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
     if stills:
-        _draw(stills, folder_path / FIGURES_FOLDER)
+        _draw(stills, to)
 
 
 def _follow(folder_path: Path, page: Path) -> None:
@@ -69,7 +72,6 @@ def _follow(folder_path: Path, page: Path) -> None:
 
 def _draw(stills: Sequence[Still], to: Path) -> None:
     """The figures as files, with a bar."""
-    options.folder(to, "DIR")
     with progress_bars() as bars:
         task = bars.add_task("drawing", total=len(stills))
         for _ in write_stills(stills, to, min(len(stills), options.available_cores())):

@@ -15,6 +15,7 @@ from simmpp.commands.reading import print_reading
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
+from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
@@ -82,10 +83,11 @@ def run_command(
     """
     config = load_config(config_path, (*overrides, *engine))
     options.writable(picture, "--picture", ".png")
-    options.folder(out, "--out")
+    options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
-    options.folder(figures, "--figures")
+    if figures != out:
+        options.claim(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(

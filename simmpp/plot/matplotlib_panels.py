@@ -16,6 +16,7 @@ from matplotlib.image import imsave
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
+from simmpp.common.files import replaced
 from simmpp.plot.curves import Bars, Curve, Panel, Scale, Stated
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -76,12 +77,15 @@ def save(figure: Figure, stem: Path) -> list[Path]:
     png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
     dots_of_images = figure.dpi
     figure.set_dpi(DOTS_PER_INCH)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    imsave(png, canvas.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
+    raster: Any = FigureCanvasAgg(figure)
+    raster.draw()
+    with replaced(png) as part:
+        imsave(part, raster.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
     figure.set_layout_engine("none")  # laid out once; the second file is to be the same
     figure.set_dpi(dots_of_images)
-    FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})
+    vector: Any = FigureCanvasSVG(figure)
+    with replaced(svg) as part:
+        vector.print_svg(part, metadata={"Date": None})
     return [png, svg]
 
 

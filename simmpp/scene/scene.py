@@ -12,6 +12,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.files import in_utf8
+
 Vector = tuple[float, float, float]
 Floats = NDArray[np.float64]
 SKY_BLUE: Vector = (0.078, 0.361, 0.753)
@@ -112,13 +114,19 @@ class MeshPart:
     material: int = 0
     name: str = ""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", in_utf8(self.name))
+
 
 SceneObject = Sphere | Cone | Polygon | MeshPart
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Objects, their materials, lights and a camera; the order of objects is their id."""
+    """Objects, their materials, lights and a camera; the order of objects is their id.
+
+    Its name, as those of objects, is text that can be written, whatever the file's name is.
+    """
 
     name: str
     objects: tuple[SceneObject, ...]
@@ -127,3 +135,6 @@ class Scene:
     lights: tuple[Light, ...]
     camera: Camera
     background: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", in_utf8(self.name))

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
+from simmpp.common.folders import SWEEP, claimed
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
 from simmpp.run.inputs import cache_workload
 from simmpp.run.provenance import result_versions
@@ -91,6 +92,7 @@ def run_sweep(
         config = with_key(config, "engine", engine)
     plan, folder = plan_of(config), None if out is None else Path(out)
     with (
+        claimed(folder, SWEEP),
         closing(_results(plan, folder)) as results,
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
@@ -99,10 +101,7 @@ def run_sweep(
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:
-    if folder is None:
-        return Results()
-    folder.mkdir(parents=True, exist_ok=True)
-    return Journal(folder, plan.identity)
+    return Results() if folder is None else Journal(folder, plan.identity)
 
 
 def _pool(workers: int, cluster: str | None, timeout_s: float | None) -> Pool:

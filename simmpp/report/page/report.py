@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.files import write_text
+from simmpp.common.folders import is_at_work
 from simmpp.common.units import counted
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas
@@ -24,7 +25,6 @@ from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
-from simmpp.sweeps.journal import is_at_work
 
 PAGE = "report.html"
 LOOK_S = 1.0

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
+from simmpp.common.folders import BENCH as BENCH_FOLDER
+from simmpp.common.folders import claimed
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
@@ -55,8 +57,10 @@ def bench(
     refuse_unfit(config)
     plans = {method: plan_of(_tried(config, method, seeds)) for method in METHODS}
     full = plans[SIMULATE]
-    out.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(out, {"versions": result_versions()})) as journal:
+    with (
+        claimed(out, BENCH_FOLDER),
+        closing(Journal(out, {"versions": result_versions()})) as journal,
+    ):
         _time_tracing(full, journal, watcher or Watcher())
         run_plans(plans.values(), journal, workers, watcher)
         return _written(plans, journal, out)
