@@ -27,7 +27,7 @@ from simmpp.sweeps.profits import profit_rows
 from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher
 
-PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
+PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98" / "plain"
 CLAIMS = ["F2a", "F2b", "F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2"]
 
 
