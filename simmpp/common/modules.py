@@ -8,5 +8,6 @@ PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
 ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
+NOTEBOOK = "simmpp.notebook"
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD)
+NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD, NOTEBOOK)

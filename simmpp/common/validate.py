@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from numbers import Integral
 
@@ -31,3 +32,13 @@ def require_word(name: str, value: object, words: Sequence[str]) -> None:
     if not (isinstance(value, str) and value in words):
         expected = ", ".join(words)
         raise ConfigError(f"{name}: value {shown(value)}: expected one of {expected}")
+
+
+def require_kind(name: str, value: object, *kinds: type) -> None:
+    """Raise ConfigError unless ``value`` is an instance of one of the classes."""
+    if not isinstance(value, kinds):
+        expected = " or ".join(_WORDS.get(kind, f"a {kind.__name__}") for kind in kinds)
+        raise ConfigError(f"{name}: value {shown(value)}: expected {expected}")
+
+
+_WORDS: dict[type, str] = {str: "a text", os.PathLike: "a path"}

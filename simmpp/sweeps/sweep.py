@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from simmpp.common.displayed import Displayed
+from simmpp.common.documented import documented
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
 from simmpp.run.inputs import cache_workload
@@ -55,13 +58,21 @@ class Watcher:
         """Something that the user should know."""
 
 
-class SweepResult(NamedTuple):
-    """The tables of a sweep."""
+@documented
+@dataclass(frozen=True, eq=False)
+class SweepResult(Displayed):
+    """The tables of a sweep: ``rows, profits = simmpp.sweep(...)``."""
 
     rows: pandas.DataFrame
     """As results.csv: one row per point and seed."""
     profits: pandas.DataFrame
     """As profits.csv: one row per point."""
+    folder: Path | None = None
+    """Where they were written, if anywhere."""
+
+    def __iter__(self) -> Iterator[pandas.DataFrame]:
+        """Both tables."""
+        return iter((self.rows, self.profits))
 
 
 def run_sweep(
@@ -95,7 +106,7 @@ def run_sweep(
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
         tables = _run(plan, results, own, folder, watcher or Watcher())
-    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]))
+    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]), folder)
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:
