@@ -8,10 +8,12 @@ measured in one process, so it holds on any machine; the rates do not.
 
 from __future__ import annotations
 
+import math
 import resource
 import time
 from dataclasses import replace
 from fractions import Fraction
+from typing import get_args
 
 import numpy as np
 
@@ -20,11 +22,13 @@ from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
+from simmpp.policy.rules import Packing
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.workload import SPHERE, Workload
 
 EXCHANGES = 128_000
 REPEATS = 3
+PACKINGS: tuple[Packing, ...] = get_args(Packing)
 
 
 def exchanges(processors: int) -> tuple[Workload, Machine, Placement]:
@@ -77,11 +81,15 @@ def best_s(engine: str, case: tuple[Workload, Machine, Placement]) -> tuple[floa
 
 
 def run_s(
-    engine: str, case: tuple[Workload, Machine, Placement], policy: str
+    engine: str,
+    case: tuple[Workload, Machine, Placement],
+    policy: str,
+    packing: Packing = "none",
 ) -> tuple[float, Result]:
     """One run and its CPU seconds."""
+    parameters = simmpp.PolicyParameters(policy, packing=packing)
     began_s = time.process_time()
-    result = simmpp.simulate(*case, simmpp.PolicyParameters(policy), engine=engine)
+    result = simmpp.simulate(*case, parameters, engine=engine)
     return time.process_time() - began_s, result
 
 
@@ -140,7 +148,28 @@ def contention() -> None:
         )
 
 
+def packing() -> None:
+    """What messages of several parts cost, alternately with those of one; the shortest of runs."""
+    print(
+        "\npacking, Mountain5, compiled\npolicy      packing    messages     parts  seconds   ratio"
+    )
+    case = mountain5(64)
+    for policy, packings in (("object", PACKINGS[:2]), ("concurrent", PACKINGS)):
+        times: dict[Packing, float] = dict.fromkeys(packings, math.inf)
+        results: dict[Packing, Result] = {}
+        for _ in range(2 * REPEATS):
+            for how in packings:
+                seconds, results[how] = run_s("compiled", case, policy, how)
+                times[how] = min(times[how], seconds)
+        for how, result in results.items():
+            print(
+                f"{policy:11} {how:9} {result.messages:9} {result.parts:9} "
+                f"{times[how]:8.3f} {times[how] / times['none']:7.2f}"
+            )
+
+
 if __name__ == "__main__":
     main()
+    packing()
     contention()
     growth()
