@@ -49,7 +49,8 @@ def html(shown: Result | SweepResult) -> str:
     parts = [_table(shown) if isinstance(shown, Result) else _profits(shown)]
     if panels := _panels(shown):
         png = b64encode(drawing(panels)._repr_png_()).decode()
-        parts.append(f'<img alt="" style="{WIDTH}" src="data:image/png;base64,{png}">')
+        alt = markup.escape("; ".join(panel.title.split("\n")[0] for panel in panels))
+        parts.append(f'<img alt="{alt}" style="{WIDTH}" src="data:image/png;base64,{png}">')
     return "\n".join([*parts, *_links(shown)])
 
 

@@ -34,11 +34,12 @@ class _Doc:
 
     @cached_property
     def _text(self) -> str:
+        plain = cleandoc(self._plain)
         entries = [
             f"{name} : {self._takes.get(name, kind)}\n{indent(text, '    ')}"
             for name, kind, text in fields_below(self._cls)
         ]
-        return f"{cleandoc(self._plain)}\n\n{HEADING}" + "\n".join(entries)
+        return f"{plain}\n\n{HEADING}" + "\n".join(entries) if entries else plain
 
 
 def fields_below(cls: type) -> Iterator[tuple[str, str, str]]:

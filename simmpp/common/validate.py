@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral
+from pathlib import Path
+from types import NoneType
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
@@ -41,4 +43,8 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
         raise ConfigError(f"{name}: value {shown(value)}: expected {expected}")
 
 
-_WORDS: dict[type, str] = {str: "a text", os.PathLike: "a path"}
+_WORDS: dict[type, str] = {
+    **{str: "a text", os.PathLike: "a path", Path: "a path", NoneType: "None"},
+    **{Mapping: "a mapping", Sequence: "a list", float: "a number", int: "an integer"},
+}
+"""Classes as users know them."""

@@ -48,6 +48,7 @@ def simulate(
     """
     policy = policy_of(policy)
     _check(workload, machine, placement, policy, engine, ready_order)
+    require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
     state = new_state(
