@@ -44,7 +44,7 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
 
 
 _WORDS: dict[type, str] = {
-    **{str: "a text", os.PathLike: "a path", Path: "a path", NoneType: "None"},
+    **{str: "a text", os.PathLike: "a path", Path: "a path", NoneType: "none"},
     **{Mapping: "a mapping", Sequence: "a list", float: "a number", int: "an integer"},
 }
 """Classes as users know them."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
 from math import prod
+from types import NoneType
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place
@@ -102,7 +103,7 @@ def machine(
     Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
     """
     require_word("preset", preset, preset_names())
-    require_kind("overrides", overrides or {}, Mapping, Constants)
+    require_kind("overrides", overrides, Mapping, Constants, NoneType)
     if not isinstance(overrides, Constants):
         overrides = structure(Constants, dict(overrides or {}), {})
     chosen = load_preset(preset)
@@ -115,7 +116,7 @@ def machine(
     return machine_of(
         numbers | changed,
         name=preset,
-        shape=torus_shape(processors, shape or overrides.shape),
+        shape=torus_shape(processors, overrides.shape if shape is None else shape),
         **overrides.words(),
         sources=sources | dict.fromkeys(changed, OVERRIDDEN),
     )

@@ -23,7 +23,7 @@ GUIDE = Path(simmpp.__file__).with_name("README.md")
 TABLE = GUIDE.read_text(encoding="utf-8").partition("## From Python")[2].partition("\n## ")[0]
 EXAMPLES = dict(re.findall(r"^\| `(\w+)` \|.*\| `(.*)` \|$", TABLE, re.MULTILINE))
 FUNCTIONS = [name for name in simmpp.__all__ if inspect.isfunction(getattr(simmpp, name))]
-WRONG: tuple[Any, ...] = (-1.5, "no such thing", [None], b"")
+WRONG: tuple[Any, ...] = (-1.5, "no such thing", [None], frozenset())
 
 
 @pytest.mark.parametrize("name", simmpp.__all__)
@@ -159,16 +159,17 @@ def test_a_wrong_argument_is_named_in_one_line(
     right = arguments(names)[function]
     for name in right:
         for value in WRONG:
-            if (name, value) in FINE:
+            if (name, value) == FINE:
                 continue
             with pytest.raises(InputError) as caught:
                 getattr(simmpp, function)(**(right | {name: value}))
             problem = str(caught.value)
-            is_named = problem.startswith((f"{name}: ", f"{CALLED.get(name)}: ", f"{value}: "))
+            called = (name, CALLED.get(name), value, f"no scene {value!r}")
+            is_named = problem.startswith(tuple(f"{word}: " for word in called))
             assert is_named and "\n" not in problem, (name, value, problem)
 
 
-FINE = {("out", "no such thing")}
+FINE = ("out", "no such thing")
 CALLED = {"spec": "scene", "fractions": "curve", "replicates": "curve"}
 """How errors name an argument that a configuration calls otherwise, or that is one of several."""
 
@@ -178,7 +179,7 @@ CALLED = {"spec": "scene", "fractions": "curve", "replicates": "curve"}
 )
 def test_a_wrong_field_is_named_in_one_line(cls: str) -> None:
     for name in inspect.signature(getattr(simmpp, cls)).parameters:
-        for value in (-1.5, [None], b""):
+        for value in (-1.5, [None], frozenset()):
             with pytest.raises(InputError) as caught:
                 getattr(simmpp, cls)(**{name: value})
             assert str(caught.value).startswith(f"{name}: value ")

@@ -96,7 +96,8 @@ def estimate(
     require_kind("machine", machine, Machine)
     require_kind("policies", policies, Sequence)
     named = [policy_of(policy, "policies") for policy in policies]
-    wanted, rules = _checked(fractions, replicates, seed), rules or PlacementRules()
+    wanted = _checked(fractions, replicates, seed)
+    rules = PlacementRules() if rules is None else rules
     require_kind("rules", rules, PlacementRules)
     if "random" in (rules.owners, rules.pixels):
         raise ConfigError("curve: random owners or pixels: expected residents alone to be drawn")
