@@ -65,7 +65,8 @@ def _links(shown: Result | SweepResult) -> Iterator[str]:
         if (shown.folder / PAGE).is_file():
             yield f'<p><a href="{page}">{page}</a></p>'
         else:
-            yield f"<p><code>simmpp report {markup.escape(str(shown.folder))}</code> makes {page}"
+            command = markup.escape(f"simmpp report {shown.folder}")
+            yield f"<p><code>{command}</code> makes {page}</p>"
 
 
 # --- a result: what its PEs spend their time with ---
@@ -164,7 +165,7 @@ def _curves(result: SweepResult) -> Iterator[Panel | Bars]:
         figure = first[measure.replace("_", "-")]
         plate = list(figure.plates)[figure.first] if figure.plates else ""
         for panel in figure.plates.get(plate, ()):
-            if isinstance(panel, Panel):
+            if isinstance(panel, Panel) and panel.curves:
                 yield titled(replace(panel, note=figure.note), figure, plate)
 
 
