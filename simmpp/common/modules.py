@@ -10,5 +10,6 @@ ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
 SERVED = "SIMMPP_SERVED"
 """What PRELOAD reads: the variable of the environment with the process that it is imported for."""
+NOTEBOOK = "simmpp.notebook"
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD)
+NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD, NOTEBOOK)

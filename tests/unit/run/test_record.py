@@ -39,6 +39,4 @@ def test_what_is_committed_is_read(name: str) -> None:
     assert facts["versions"].startswith("python 3")
     several = name == "nebel98/mixed"  # a configuration for each table
     assert ("machine" in facts) == (not several)
-        name != "nebel98/mixed"
-    )  # which has a configuration for each table
     assert json.dumps(folder.record)
