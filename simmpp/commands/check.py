@@ -12,7 +12,7 @@ import click
 
 from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import FAILED, notice, output, table
+from simmpp.commands.terminal import FAILED, notice, output, progress_bars, table
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, write_csv
 from simmpp.common.folders import BASELINE, CHECK
@@ -51,7 +51,7 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
 @options.path(
     "--out",
-    "Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
+    "Folder for what came out: the tables, moved.csv, and curves that moved over the baseline's.",
 )
 @options.workers("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
@@ -163,13 +163,18 @@ def _rounded(line: Mapping[str, str]) -> dict[str, str]:
 
 
 def _write(moved: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, out: Path) -> None:
-    """What a failed check leaves for people: tables and a picture."""
-    # Only --out draws, and matplotlib takes half a second.
-    from simmpp.report.page.overlay import overlay
-
+    """What a check leaves for people: tables, and a picture of the curves that moved."""
     for name in (PROFITS, RESULTS, RECORD):
         copy(obtained / name, out / name)
     cells = lines(moved)
     columns = list(cells[0]) if cells else ["measure", "baseline", "now", "change", "allowed"]
     write_csv(cells, columns, out / MOVED_CSV)
-    overlay(baseline.profits, now.profits, out / OVERLAY)
+    for suffix in (".png", ".svg"):
+        (out / f"{OVERLAY}{suffix}").unlink(missing_ok=True)  # of an earlier check
+    if moved:
+        # Only this draws, and matplotlib takes half a second.
+        from simmpp.report.page.overlay import overlay
+
+        with progress_bars() as bars:
+            bars.add_task("drawing", total=None)
+            overlay(baseline.profits, now.profits, out / OVERLAY)

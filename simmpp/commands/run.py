@@ -16,12 +16,14 @@ from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders
 from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
 from simmpp.common.folders import RUN
+from simmpp.common.modules import PICTURES
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import RECORD, RESULTS, write_rows
 from simmpp.run.summary import summary
+from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
@@ -92,6 +94,8 @@ def run_command(
             "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
             "are for simmpp sweep"
         )
+    if figures and options.available_cores() > 1:
+        start_server(PICTURES)  # loads matplotlib while the rays are traced
     looks = Looks(picture, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 

@@ -113,7 +113,24 @@ class LocalProcesses(Pool):
         self.executor.shutdown(wait=True, cancel_futures=True)
 
 
-def start_server() -> None:
+@contextmanager
+def processes(workers: int, preload: str) -> Iterator[Executor]:
+    """Processes that have loaded a module, for work that is no task; one works right here.
+
+    In the end, also when interrupted, what they are at is finished and the rest is dropped.
+    """
+    if workers == 1:
+        yield SerialExecutor()
+        return
+    executor, leash = _leashed(workers, preload)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+        leash.close()
+
+
+def start_server(preload: str = PRELOAD) -> None:
     """Begin to load what workers need while this process imports the same for a second.
 
     The workers are forks of this server, so they need not load it again. The terminal sends Ctrl-C
@@ -121,7 +138,7 @@ def start_server() -> None:
     """
     if START_METHOD == "forkserver":
         context: Any = multiprocessing.get_context(START_METHOD)
-        context.set_forkserver_preload([PRELOAD])
+        context.set_forkserver_preload([preload])
         with _in_environment("PYTHONWARNINGS", "ignore:resource_tracker"):
             # Tells of what a process that was ended has left, and cleans up. Would the server
             # begin it, that unblocked the signals.
@@ -152,12 +169,12 @@ Leashed = tuple[Executor, Connection]
 """An executor whose processes are there, and what holds them."""
 
 
-def _leashed(workers: int) -> Leashed:
+def _leashed(workers: int, preload: str = PRELOAD) -> Leashed:
     """Begin ``workers`` processes. It takes seconds, but Ctrl-C is heard at once.
 
     So they are begun in another thread, where no signal can leave half a process behind.
     """
-    start_server()
+    start_server(preload)
     begun: Future[Leashed] = Future()
     threading.Thread(target=_begin_processes, args=(workers, begun), daemon=True).start()
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import json
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -95,8 +96,11 @@ def invert_rule(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_committed_baseline_holds() -> None:
+    Path("o").mkdir()
+    Path("o/profits.png").write_bytes(b"of a check when something had moved")
     done = simmpp(*CI, str(COMMITTED / "profits.csv"), "--out", "o")
     assert done.exit_code == 0, done.output
+    assert sorted(os.listdir("o")) == ["moved.csv", "profits.csv", "results.csv", "run.json"]
     assert done.stdout == "check: 128 rows, 64 points: nothing moved\n"
     assert moved("o") == []
     assert Path("o/results.csv").read_bytes() == (COMMITTED / "results.csv").read_bytes()

@@ -18,7 +18,6 @@ from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
 from simmpp.methods.columns import PLACE
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.parameters import DEFAULT_POLICY, REFERENCE
 from simmpp.run.provenance import result_versions
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
@@ -81,6 +80,9 @@ def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
     write_csv(rows, bench_columns(keys), out / BENCH)
     ladder, files = rungs(rows, keys), [out / BENCH]
     if ladder:
+        # Not at the top: pages, which read these tables, need no matplotlib.
+        from simmpp.plot.matplotlib_panels import draw
+
         seeds = len(full.config.settings.seeds)
         files += draw(bench_panels(ladder, NAMES, seeds), out / Path(BENCH).stem)
     return Bench(ladder, files, [row["error"] for row in runs if row["error"]])

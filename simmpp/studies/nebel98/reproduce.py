@@ -16,7 +16,6 @@ from simmpp.config.config import Config, load_config
 from simmpp.config.defaults import READING
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.plot.curves import Panel
-from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
 from simmpp.run.provenance import all_versions, result_versions
 from simmpp.run.record import write_record
@@ -126,6 +125,9 @@ def _report(
     reading: str, plans: Mapping[str, Plan], journal: Journal, overrides: Sequence[str], out: Path
 ) -> Reproduction:
     """Write configurations, rows, figures and the record of one reading."""
+    # Not at the top: pages, which show the same figures, need no matplotlib.
+    from simmpp.plot.matplotlib_panels import draw
+
     for name in (MODEL, *plans):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
     rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
