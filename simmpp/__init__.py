@@ -30,11 +30,27 @@ if TYPE_CHECKING:
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.run.profit import profits
     from simmpp.studies.curve.estimate import estimate
+    from simmpp.sweeps.sweep import SweepResult
     from simmpp.sweeps.sweep import run_sweep as sweep
     from simmpp.workload.exchange.exchange import export_workload, import_workload
     from simmpp.workload.picture import Picture
     from simmpp.workload.sources import load_scene
     from simmpp.workload.trace.tracer import trace
+else:  # type checkers would take any name to be there
+
+    def __getattr__(name: str) -> Any:
+        """Import on first use: ``simmpp --help`` must not wait for numba."""
+        if name == "__version__":
+            from importlib.metadata import version  # takes as long as all of simmpp --help
+
+            return version("simmpp")
+        if name not in _HOME:
+            raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
+        module, _, attribute = _HOME[name].partition(":")
+        value = getattr(import_module(module), attribute)
+        globals()[name] = value
+        return value
+
 
 _HOME = {
     "Cells": "simmpp.placement.placement:Cells",
@@ -43,6 +59,7 @@ _HOME = {
     "PlacementRules": "simmpp.placement.placement:PlacementRules",
     "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
     "Result": "simmpp.engine.result:Result",
+    "SweepResult": "simmpp.sweeps.sweep:SweepResult",
     "estimate": "simmpp.studies.curve.estimate:estimate",
     "export_workload": "simmpp.workload.exchange.exchange:export_workload",
     "import_workload": "simmpp.workload.exchange.exchange:import_workload",
@@ -62,6 +79,7 @@ __all__ = [
     "PlacementRules",
     "PolicyParameters",
     "Result",
+    "SweepResult",
     "estimate",
     "export_workload",
     "import_workload",
@@ -81,17 +99,3 @@ __version__: str
 def __dir__() -> list[str]:
     """What there is for others, imported or not."""
     return sorted([*__all__, "__version__"])
-
-
-def __getattr__(name: str) -> Any:
-    """Import on first use: ``simmpp --help`` must not wait for numba."""
-    if name == "__version__":
-        from importlib.metadata import version  # takes as long as all of simmpp --help
-
-        return version("simmpp")
-    if name not in _HOME:
-        raise AttributeError(f"module 'simmpp' has no attribute '{name}'")
-    module, _, attribute = _HOME[name].partition(":")
-    value = getattr(import_module(module), attribute)
-    globals()[name] = value
-    return value

@@ -10,7 +10,11 @@ ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
 PANELS = "simmpp.plot.matplotlib_panels"
 PICTURES = "simmpp.report.run_figures.drawing"
+NOTEBOOK = "simmpp.notebook"
 SERVED = "SIMMPP_SERVED"
 """What PRELOAD reads: the variable of the environment with the process that it is imported for."""
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD, PANELS, PICTURES)
+NAMED_MODULES = (
+    *(TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE),
+    *(PRELOAD, PANELS, PICTURES, NOTEBOOK),
+)

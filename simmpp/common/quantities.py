@@ -1,4 +1,4 @@
-"""Settings that are quantities: users write text with a unit, Python passes exact integers.
+"""Settings that are quantities: users write text with a unit, Python may pass exact integers.
 
 What is computed with is the integer (ps, bytes, bytes per second); files get the text again.
 """
@@ -12,9 +12,8 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, PlainSerializer
 
 from simmpp.common import units
-from simmpp.common.errors import ConfigError
 from simmpp.common.strict import Expect, parsed_by
-from simmpp.common.units import NUMBER, shown
+from simmpp.common.units import NUMBER
 from simmpp.common.validate import whole
 
 _PREFIX = "(?:[pnuµμmkMGT]|[KMGT]i|pico|nano|micro|milli|kilo|mega|giga|tera|kibi|mebi|gibi|tebi)?"
@@ -36,19 +35,12 @@ SHARE = {"anyOf": [{"type": "number", "minimum": 0, "maximum": 1}, SHARE_TEXT]}
 
 
 def _up_to(most: int) -> Callable[[object], int]:
-    """What Python passes for a quantity."""
+    """A quantity that Python passes as a number."""
     return lambda value: whole(value, 0, most)
 
 
-def _fraction(value: object) -> Fraction:
-    """What Python passes for a share."""
-    if isinstance(value, str):
-        raise ConfigError(f"value {shown(value)}: expected a number from 0 to 1")
-    return units.share(value)
-
-
 def _marks(
-    written: Callable[[object], Any], passed: Callable[[object], Any], expected: Expect
+    written: Callable[[object], Any], passed: Callable[[object], Any] | None, expected: Expect
 ) -> tuple[BeforeValidator, Expect, PlainSerializer]:
     return parsed_by(written, passed), expected, PlainSerializer(expected.write)
 
@@ -59,6 +51,7 @@ _A_TIME = Expect(
     "ps, ns, us, ms, s or min",
     f"0 to {units.format_ps(units.LONGEST_PS)}",
     units.write_ps,
+    "an integer of picoseconds",
 )
 _A_SIZE = Expect(
     units.A_SIZE,
@@ -66,6 +59,7 @@ _A_SIZE = Expect(
     "B, kB, MB, GB, TB, KiB, MiB, GiB or TiB",
     f"0 to {units.format_bytes(units.MOST_BYTES)}",
     units.write_bytes,
+    "an integer of bytes",
 )
 _A_BANDWIDTH = Expect(
     units.A_BANDWIDTH,
@@ -73,10 +67,11 @@ _A_BANDWIDTH = Expect(
     "B/s, kB/s, MB/s, GB/s or TB/s; in bits, 8 to a byte: bit/s, kbit/s, Mbit/s, Gbit/s or Tbit/s",
     " to ".join(map(units.format_bytes_per_s, (units.LEAST_BYTES_PER_S, units.MOST_BYTES_PER_S))),
     units.write_bytes_per_s,
+    "an integer of bytes per second, 0 for unlimited",
 )
 Time = Annotated[int, *_marks(units.picoseconds, _up_to(units.LONGEST_PS), _A_TIME)]
 Size = Annotated[int, *_marks(units.byte_count, _up_to(units.MOST_BYTES), _A_SIZE)]
 Bandwidth = Annotated[
     int, *_marks(units.bytes_per_second, _up_to(units.MOST_BYTES_PER_S), _A_BANDWIDTH)
 ]
-Share = Annotated[Fraction, *_marks(units.share, _fraction, Expect(units.A_SHARE, SHARE))]
+Share = Annotated[Fraction, *_marks(units.share, None, Expect(units.A_SHARE, SHARE))]

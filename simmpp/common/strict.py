@@ -3,7 +3,7 @@
 A setting is a field of a class beside what reads it: its type says what it takes, and the text
 below it what it means. Such a class is ``Strict`` (a pydantic model) or ``declared`` (a frozen
 dataclass that Python callers make as well); ``structure`` makes either of what users write.
-From the fields follow the errors, the table of keys and the JSON schema.
+From the fields follow the errors, the help, the table of keys and the JSON schema.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import wraps
+from inspect import cleandoc
 from typing import Annotated, Any, Literal, TypeVar, cast, dataclass_transform, get_args, get_origin
 
 from pydantic import (
@@ -27,6 +28,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 from pydantic_core.core_schema import CoreSchema
 
+from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import in_utf8
 from simmpp.common.places import KeyPath, Place, misplaced, unknown
@@ -39,12 +41,12 @@ _CONFIG = ConfigDict(
     extra="forbid",
     arbitrary_types_allowed=True,
     use_attribute_docstrings=True,
-    # Python callers say `refresh_ps`, users `load_info: {refresh: ...}`: see ``structure``
+    # Python callers say `refresh_ps` or, as users do, `load_info: {refresh: ...}`
     validate_by_name=True,
-    validate_by_alias=False,
+    validate_by_alias=True,
 )
 WRITTEN = "written"
-"""Context of what users write: quantities are text with a unit. Python passes numbers."""
+"""Context of what users write: quantities are text with a unit. Python passes numbers, too."""
 
 
 class Strict(BaseModel):
@@ -56,7 +58,8 @@ class Strict(BaseModel):
 @dataclass_transform(frozen_default=True)
 def declared(cls: type[T]) -> type[T]:
     """A frozen dataclass of settings; wrong arguments are a ConfigError of one line."""
-    settings: Any = pydantic_dataclass(frozen=True, config=_CONFIG)(cls)
+    described = ConfigDict(json_schema_extra={"description": cleandoc(cls.__doc__ or "")})
+    settings: Any = pydantic_dataclass(frozen=True, config=_CONFIG | described)(cls)
     init, names = settings.__init__, [field.name for field in fields(settings)]
 
     @wraps(init)
@@ -68,7 +71,10 @@ def declared(cls: type[T]) -> type[T]:
             raise _explained(settings, error, {}) from None
 
     settings.__init__ = checked
-    return cast(type[T], settings)
+    expected = {name: expectation(field) for name, field in settings.__pydantic_fields__.items()}
+    return documented(
+        cast(type[T], settings), {name: what.passed for name, what in expected.items() if what}
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,11 +89,18 @@ class Expect:
     """The range, in words."""
     write: Callable[[Any], str] = str
     """A value as a user would write it."""
+    number: str = ""
+    """What Python may pass in place of a text."""
 
     @property
     def takes(self) -> str:
         """The text, with the range where it does not say it."""
         return self.text if self.span in self.text else f"{self.text}, {self.span}"
+
+    @property
+    def passed(self) -> str:
+        """What an argument takes."""
+        return f"{self.takes}; or {self.number}" if self.number else self.takes
 
     def __get_pydantic_json_schema__(
         self, inner: CoreSchema, handler: GetJsonSchemaHandler
@@ -119,12 +132,13 @@ def parsed_by(
 ) -> BeforeValidator:
     """A validator from a function that raises ConfigError for a wrong value.
 
-    ``passed`` is the one for what Python passes, where users write something else.
+    ``passed`` is the one for what Python passes that is no text, where users write something else.
     """
 
     def validate(value: object, info: ValidationInfo) -> object:
+        is_written = info.context == WRITTEN or isinstance(value, str)
         try:
-            return parse(value) if passed is None or info.context == WRITTEN else passed(value)
+            return parse(value) if passed is None or is_written else passed(value)
         except ConfigError as error:
             raise mistake(error.problem) from None
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from numbers import Integral
+from pathlib import Path
+from types import NoneType
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
@@ -31,3 +34,17 @@ def require_word(name: str, value: object, words: Sequence[str]) -> None:
     if not (isinstance(value, str) and value in words):
         expected = ", ".join(words)
         raise ConfigError(f"{name}: value {shown(value)}: expected one of {expected}")
+
+
+def require_kind(name: str, value: object, *kinds: type) -> None:
+    """Raise ConfigError unless ``value`` is an instance of one of the classes."""
+    if not isinstance(value, kinds):
+        expected = " or ".join(_WORDS.get(kind, f"a {kind.__name__}") for kind in kinds)
+        raise ConfigError(f"{name}: value {shown(value)}: expected {expected}")
+
+
+_WORDS: dict[type, str] = {
+    **{str: "a text", os.PathLike: "a path", Path: "a path", NoneType: "none"},
+    **{Mapping: "a mapping", Sequence: "a list", float: "a number", int: "an integer"},
+}
+"""Classes as users know them."""

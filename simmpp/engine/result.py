@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.displayed import Displayed
+from simmpp.common.documented import documented
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
@@ -45,13 +47,17 @@ PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_byt
 """Further ones, in rows of sweeps in which a policy packs."""
 
 
+@documented
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Displayed):
     """Makespan, counters and the accounts of every PE, clipped at the makespan."""
 
     policy: str
+    """Its label or name."""
     engine: str
+    """Which event loop ran it; all give the same integers."""
     makespan_ps: int
+    """Simulated time until the last ray is finished."""
     messages_by_kind: tuple[int, int, int, int]
     """Messages sent, by the kind of their first part: requests, objects, rays, loads."""
     parts_by_kind: tuple[int, int, int, int]

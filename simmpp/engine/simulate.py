@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from simmpp.common.errors import ConfigError
+from simmpp.common.validate import require_kind, require_word
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.initial import new_state
@@ -16,7 +16,7 @@ from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import POLICIES, PolicyParameters
+from simmpp.policy.parameters import POLICIES, PolicyParameters, policy_of
 from simmpp.workload.workload import Workload
 
 ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {
@@ -31,7 +31,7 @@ def simulate(
     workload: Workload,
     machine: Machine,
     placement: Placement,
-    policy: PolicyParameters,
+    policy: PolicyParameters | str,
     *,
     engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
@@ -40,13 +40,15 @@ def simulate(
 ) -> Result:
     """Replay a workload on a simulated machine.
 
-    ``record`` says what is noted besides the totals. ``progress`` is called now and then with the
-    number of rays left.
+    A policy's name stands for it with its defaults. ``record`` says what is noted besides the
+    totals. ``progress`` is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
     are left and nothing is scheduled (a bug, or a policy that starves).
     """
+    policy = policy_of(policy)
     _check(workload, machine, placement, policy, engine, ready_order)
+    require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
     state = new_state(
@@ -70,11 +72,11 @@ def _check(
     engine: str,
     ready_order: str,
 ) -> None:
-    if policy.name not in POLICIES:
-        raise ConfigError(f"no policy '{policy.name}'; expected one of {', '.join(POLICIES)}")
-    if engine not in ENGINES:
-        raise ConfigError(f"no engine '{engine}'; expected one of {', '.join(ENGINES)}")
-    if ready_order not in READY_ORDERS:
-        raise ConfigError(f"no order '{ready_order}'; expected one of {', '.join(READY_ORDERS)}")
+    require_kind("workload", workload, Workload)
+    require_kind("machine", machine, Machine)
+    require_kind("placement", placement, Placement)
+    require_word("policy", policy.name, tuple(POLICIES))
+    require_word("engine", engine, tuple(ENGINES))
+    require_word("ready_order", ready_order, READY_ORDERS)
     check_fit(workload, machine, placement)
     check_counters(workload, machine)

@@ -5,16 +5,14 @@ All follow from the fields of ``Machine``, where each is declared; here any numb
 
 from __future__ import annotations
 
-import ast
-import inspect
 from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache
-from itertools import pairwise
 from typing import Annotated, Any, Literal, get_origin, get_type_hints
 
 from pydantic import Field, create_model
 
+from simmpp.common.documented import fields_below
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import TIME
 from simmpp.common.strict import Short, Strict, parsed_by
@@ -53,7 +51,8 @@ def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
 
     ``nested`` has the model, and its default, of each class of constants that a field may hold.
     """
-    hints, meanings = get_type_hints(cls, include_extras=True), _meanings(cls)
+    hints = get_type_hints(cls, include_extras=True)
+    meanings = {name: " ".join(text.split()) for name, _, text in fields_below(cls)}
     model: dict[str, Any] = {}
     for constant in fields(cls):
         if constant.name not in OTHERS:
@@ -67,18 +66,6 @@ def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
             meaning = Field(default=default, description=meanings[constant.name])
             model[key_of(constant.name)] = (hint, meaning)
     return model
-
-
-def _meanings(cls: type) -> dict[str, str]:
-    """The text below each field of a class."""
-    tree = ast.parse(inspect.getsource(cls)).body[0]
-    assert isinstance(tree, ast.ClassDef)
-    return {
-        field.target.id: " ".join(str(text.value.value).split())
-        for field, text in pairwise(tree.body)
-        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
-        if isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
-    }
 
 
 CopyConstants: Any = create_model("CopyConstants", __base__=Strict, **optional_fields(CopyCost, {}))

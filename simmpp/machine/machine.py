@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.documented import documented
 from simmpp.common.quantities import Bandwidth, Size, Time
 from simmpp.common.strict import Expect, integer, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
@@ -22,7 +23,8 @@ MOST_PROCESSORS = 65536
 """PEs of the largest torus of the presets: Blue Gene/L."""
 
 
-def _is_shape(value: object) -> bool:
+def is_shape(value: object) -> bool:
+    """Are these three numbers of PEs?"""
     return (
         isinstance(value, list | tuple)
         and len(value) == 3
@@ -34,9 +36,10 @@ def _is_shape(value: object) -> bool:
 _SHAPE = "three positive integers, such as [4, 4, 4]"
 _SIDES = {"type": "integer", "minimum": 1, "maximum": MOST_PROCESSORS}
 _THREE = {"type": "array", "items": _SIDES, "minItems": 3, "maxItems": 3}
-Shape = Annotated[tuple[int, int, int], *only(_is_shape, Expect(_SHAPE, _THREE, "PEs"))]
+Shape = Annotated[tuple[int, int, int], *only(is_shape, Expect(_SHAPE, _THREE, "PEs"))]
 
 
+@documented
 @dataclass(frozen=True)
 class CopyCost:
     """Cost of packing or unpacking one message of a kind: fixed + payload bytes / bandwidth."""
@@ -51,6 +54,7 @@ Copies = tuple[CopyCost, CopyCost, CopyCost, CopyCost]
 """Of each kind of message: request, object, rays, load."""
 
 
+@documented
 @dataclass(frozen=True)
 class TestCost:
     """Cost of one ray-object intersection, by kind of primitive."""
@@ -79,6 +83,7 @@ class TestCost:
         return by_kind[workload.object_kinds] + self.per_triangle_ps * beyond_first
 
 
+@documented
 @dataclass(frozen=True)
 class Machine:
     """Constants of one machine; ``shape`` says how many PEs it has.
@@ -87,6 +92,7 @@ class Machine:
     """
 
     name: str
+    """That of its preset."""
     shape: Shape
     """PEs along x, y, z of the torus, the most cubic when not given; PE k = x + X (y + Y z)."""
     send_startup_ps: Time

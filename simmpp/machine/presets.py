@@ -7,16 +7,17 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
 from math import prod
+from types import NoneType
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place
 from simmpp.common.sourced import Cited, values_of
 from simmpp.common.strict import structure
 from simmpp.common.units import shown
-from simmpp.common.validate import require_whole
+from simmpp.common.validate import require_kind, require_whole, require_word
 from simmpp.common.yamlfile import Document, read_yaml
 from simmpp.machine.constants import Constants, machine_of
-from simmpp.machine.machine import MOST_PROCESSORS, Machine, Shape
+from simmpp.machine.machine import MOST_PROCESSORS, Machine, Shape, is_shape
 from simmpp.machine.torus import default_shape
 
 _FOLDER = files("simmpp") / "machine" / "presets"
@@ -101,6 +102,8 @@ def machine(
     ``shape``, else the overrides' shape, else the most cubic one.
     Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
     """
+    require_word("preset", preset, preset_names())
+    require_kind("overrides", overrides, Mapping, Constants, NoneType)
     if not isinstance(overrides, Constants):
         overrides = structure(Constants, dict(overrides or {}), {})
     chosen = load_preset(preset)
@@ -113,7 +116,7 @@ def machine(
     return machine_of(
         numbers | changed,
         name=preset,
-        shape=torus_shape(processors, shape or overrides.shape),
+        shape=torus_shape(processors, overrides.shape if shape is None else shape),
         **overrides.words(),
         sources=sources | dict.fromkeys(changed, OVERRIDDEN),
     )
@@ -125,7 +128,8 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
     Raises ConfigError otherwise.
     """
     require_whole("processors", processors, 1, MOST_PROCESSORS)
-    if shape is not None and prod(shape) != processors:
+    if shape is not None and not (is_shape(shape) and prod(shape) == processors):
+        value = list(shape) if isinstance(shape, tuple) else shape
         expected = f"three integers whose product is processors = {processors}"
-        raise ConfigError(f"value {list(shape)}: expected {expected}")
+        raise ConfigError(f"value {shown(value)}: expected {expected}", where="shape")
     return shape or default_shape(processors)

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from simmpp.common.randomness import generator
-from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_whole
+from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
 from simmpp.placement.owners import owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import Memory, Placement, PlacementRules
@@ -23,7 +23,10 @@ def place(
 
     Raises ConfigError for a number of PEs or a seed that can't be.
     """
+    require_kind("workload", workload, Workload)
     require_whole("processors", processors, 1, MOST_COUNT)
+    require_kind("memory", memory, Memory)
+    require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
     owner_of = owners(rules.owners, workload.object_centroids, processors, seed)
     offsets, objects = replicas(workload, owner_of, processors, memory, seed)

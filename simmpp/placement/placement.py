@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import SHARE_OF_TEXT, Share, Size
 from simmpp.common.strict import Expect, declared, mistake, parsed_by
@@ -35,11 +36,13 @@ Residents = Literal["random", "nearest", "hot"]
 Pixels = Literal["blocks", "rows", "tiles", "interleaved", "random"]
 
 
+@documented
 @dataclass(frozen=True)
 class Cells:
     """Pixels in squares, of that many along each side, which are dealt out in turn."""
 
     cells: int
+    """Pixels along each side of a square."""
 
     def __post_init__(self) -> None:
         require_whole("cells", self.cells, 1, MOST_COUNT)
@@ -115,6 +118,16 @@ class Memory:
     share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
     are resident in the mean). The replicated scene fetches none."""
 
+    if TYPE_CHECKING:  # arguments take more than fields hold
+
+        def __init__(
+            self,
+            fraction: Fraction | float | str = ...,
+            bytes: int | str | None = ...,
+            residents: Residents = ...,
+            transient: Fraction | int | str = ...,
+        ) -> None: ...
+
     @property
     def kept(self) -> Fraction | int | Literal["x"]:
         """The transient share or number of objects; ``x`` only where no fraction says which."""
@@ -148,11 +161,13 @@ class PlacementRules:
     squares of so many pixels along each side (cells)."""
 
 
+@documented
 @dataclass(frozen=True, eq=False)
 class Placement:
     """One draw of owners, residents and pixels for a number of PEs."""
 
     processors: int
+    """Number of PEs, nb."""
     owners: NDArray[np.int32]
     """(N,) int32: the PE that owns each object."""
     replica_offsets: NDArray[np.int64]

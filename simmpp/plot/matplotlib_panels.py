@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,7 @@ PART_STYLES: tuple[dict[str, Any], ...] = (
     {"facecolor": "#8c62b3", "hatch": "////"},
 )
 """Of bars, bottom first: they differ in lightness too."""
-WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH = 6.3, 4.1, 200
+WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH, SCREEN_DOTS_PER_INCH = 6.3, 4.1, 200, 96
 MOST_IN_TWOS = 4
 """Panels up to which two are side by side; of more it is three."""
 SETTINGS: Any = {
@@ -55,18 +56,34 @@ SETTINGS: Any = {
 """Equal figures give equal bytes: ids in SVG are hashes with this salt, not random."""
 
 
+class Drawing(Figure):
+    """A figure that notebooks show, whether they use pyplot or not."""
+
+    def _repr_png_(self) -> bytes:
+        """Called by notebooks."""
+        buffer = BytesIO()
+        self.savefig(buffer, dpi=SCREEN_DOTS_PER_INCH)
+        return buffer.getvalue()
+
+
 def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
     """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
+    with matplotlib.rc_context(SETTINGS):
+        return save(drawing(panels), stem)
+
+
+def drawing(panels: Sequence[Panel | Bars]) -> Drawing:
+    """The panels side by side, at least one."""
     across = min(len(panels), 2 if len(panels) <= MOST_IN_TWOS else 3)
     down = -(-len(panels) // across)
     with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")
+        figure = Drawing(figsize=(WIDTH_IN * across, HEIGHT_IN * down), layout="constrained")
         grid = figure.subplots(down, across, squeeze=False)
         for axes in grid.flat[len(panels) :]:
             axes.remove()
         for axes, panel in zip(grid.flat, panels, strict=False):
             _draw_bars(axes, panel) if isinstance(panel, Bars) else _draw_panel(axes, panel)
-        return save(figure, stem)
+    return figure
 
 
 def save(figure: Figure, stem: Path) -> list[Path]:

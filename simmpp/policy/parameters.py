@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from fractions import Fraction
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import (
     AliasPath,
@@ -71,7 +71,7 @@ def _min_load(value: object) -> Fraction | int:
 def _load(
     value: object, expected: str = f"a Fraction or an integer from 0 to {MOST_COUNT}"
 ) -> Fraction | int:
-    """The same, as Python passes it."""
+    """The same, as Python may pass it."""
     try:
         if isinstance(value, Fraction) and 0 <= value <= MOST_COUNT:
             return value
@@ -86,10 +86,6 @@ def _load_info(value: object) -> object:
         with suppress(ConfigError):
             picoseconds(value["refresh"])
             return "piggyback"
-    return _word(value)
-
-
-def _word(value: object) -> object:
     if not isinstance(value, str) or value not in get_args(LoadInfo):
         raise ConfigError(f"value {shown(value)}: expected {_LOAD_INFO}")
     return value
@@ -133,7 +129,7 @@ class PolicyParameters:
     (concurrent)."""
     load_info: Annotated[
         LoadInfo,
-        parsed_by(_load_info, _word),
+        parsed_by(_load_info),
         Expect(_LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
     ] = "piggyback"
     """How a PE knows the load of others: from headers (the paper), exactly, or not at all; with
@@ -147,6 +143,21 @@ class PolicyParameters:
     packing: Packing = "none"
     """What goes to one PE at one dispatch in one message: nothing, its requests (and the answers to
     them), or all, rays with requests (the mixed dataflow of Nebel 1997)."""
+
+    if TYPE_CHECKING:  # arguments take more than fields hold
+
+        def __init__(
+            self,
+            name: str = ...,
+            label: str | None = ...,
+            min_load: Fraction | int | str = ...,
+            batch: int = ...,
+            ask_at_least: int = ...,
+            load_info: LoadInfo | dict[str, str] = ...,
+            refresh_ps: int | str | None = ...,
+            merge_requests: bool = ...,
+            packing: Packing = ...,
+        ) -> None: ...
 
     @field_validator("packing")
     @classmethod
@@ -173,3 +184,16 @@ class PolicyParameters:
         if refresh := plain.pop("refresh_ps", None):
             plain["load_info"] = {"refresh": refresh}
         return plain
+
+
+def policy_of(policy: PolicyParameters | str, argument: str = "policy") -> PolicyParameters:
+    """The policy, or the one of that name with its defaults, as Python callers pass either.
+
+    Raises ConfigError, which names the argument, for what is none.
+    """
+    if isinstance(policy, PolicyParameters):
+        return policy
+    if not isinstance(policy, str) or policy not in POLICIES:
+        expected = f"{in_words(tuple(POLICIES))}, or PolicyParameters"
+        raise ConfigError(f"{argument}: value {shown(policy)}: expected {expected}")
+    return PolicyParameters(policy)

@@ -9,16 +9,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
+from simmpp.common.validate import require_kind
 from simmpp.engine.result import Result
 from simmpp.policy.parameters import REFERENCE
 
 
+@documented
 @dataclass(frozen=True)
 class Profit:
     """What one policy gains over the reference; above 1 it is better."""
 
     policy: str
+    """Its label or name."""
     time: float
     """Makespan of the reference / makespan of the policy."""
     messages: float
@@ -37,10 +41,15 @@ def profits(results: Sequence[Result], reference: str = REFERENCE) -> tuple[Prof
 
     Raises ConfigError if there is none.
     """
+    require_kind("results", results, Sequence)
+    for result in results:
+        require_kind("results", result, Result)
     base = next((result for result in results if result.policy == reference), None)
     if base is None:
         known = ", ".join(result.policy for result in results)
-        raise ConfigError(f"no result of the reference {reference!r}; there are: {known}")
+        raise ConfigError(
+            f"reference: no result of the reference {reference!r}; there are: {known}"
+        )
     return tuple(
         Profit(
             result.policy,

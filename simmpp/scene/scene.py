@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.documented import documented
 from simmpp.common.files import in_utf8
 
 Vector = tuple[float, float, float]
@@ -20,11 +21,13 @@ SKY_BLUE: Vector = (0.078, 0.361, 0.753)
 """Background of most SPD scenes, "UNC sky blue"."""
 
 
+@documented
 @dataclass(frozen=True)
 class Material:
     """Surface of an object, as NFF's ``f`` line gives it (Haines 1987)."""
 
     colour: Vector = (0.75, 0.75, 0.75)
+    """Red, green and blue of what it reflects, from 0 to 1."""
     kd: float = 1.0
     """Diffuse share."""
     ks: float = 0.0
@@ -32,6 +35,7 @@ class Material:
     shine: float = 1.0
     """Phong's cosine power."""
     transmittance: float = 0.0
+    """Share of the light that passes; a surface with more than 0 refracts."""
     ior: float = 1.0
     """Index of refraction; only read where transmittance > 0."""
 
@@ -46,26 +50,34 @@ class Material:
         return self.transmittance > 0
 
 
+@documented
 @dataclass(frozen=True)
 class Light:
     """A point light."""
 
     position: Vector
+    """Where it is, in scene units."""
     colour: Vector = (1.0, 1.0, 1.0)
+    """Red, green and blue of what it emits."""
 
 
+@documented
 @dataclass(frozen=True)
 class Camera:
     """A pinhole camera, as NFF's ``v`` lines give it."""
 
     eye: Vector
+    """Where it stands."""
     at: Vector
+    """What it looks at, the centre of the picture."""
     up: Vector = (0.0, 0.0, 1.0)
+    """The direction that is upwards in the picture."""
     angle_degrees: float = 45.0
     """Full field of view, the same horizontally and vertically."""
     hither: float = 0.0
     """Near plane of hidden-surface programs; a ray tracer ignores it."""
     resolution: tuple[int, int] = (512, 512)
+    """Columns and rows that the file asks for; ``Picture`` decides what is traced."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +133,7 @@ class MeshPart:
 SceneObject = Sphere | Cone | Polygon | MeshPart
 
 
+@documented
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Objects, their materials, lights and a camera; the order of objects is their id.
@@ -129,12 +142,17 @@ class Scene:
     """
 
     name: str
+    """Label in tables, e.g. ``mountain:5``."""
     objects: tuple[SceneObject, ...]
+    """Spheres, cones, polygons and parts of meshes."""
     materials: tuple[Material, ...]
     """``object.material`` indexes this tuple."""
     lights: tuple[Light, ...]
+    """Each gets a shadow ray from every hit whose surface faces it."""
     camera: Camera
+    """From where the picture is taken."""
     background: Vector = (0.0, 0.0, 0.0)
+    """Colour of rays that hit nothing."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", in_utf8(self.name))

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from types import NoneType
+from typing import TYPE_CHECKING
 
+from simmpp.common.displayed import Displayed
+from simmpp.common.documented import documented
+from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
 from simmpp.common.folders import SWEEP, claimed
+from simmpp.common.units import shown
+from simmpp.common.validate import require_kind, require_whole
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
 from simmpp.run.inputs import cache_workload
 from simmpp.run.provenance import result_versions
@@ -56,13 +63,21 @@ class Watcher:
         """Something that the user should know."""
 
 
-class SweepResult(NamedTuple):
-    """The tables of a sweep."""
+@documented
+@dataclass(frozen=True, eq=False)
+class SweepResult(Displayed):
+    """The tables of a sweep: ``rows, profits = simmpp.sweep(...)``."""
 
     rows: pandas.DataFrame
     """As results.csv: one row per point and seed."""
     profits: pandas.DataFrame
     """As profits.csv: one row per point."""
+    folder: Path | None = None
+    """Where they were written, if anywhere."""
+
+    def __iter__(self) -> Iterator[pandas.DataFrame]:
+        """Both tables."""
+        return iter((self.rows, self.profits))
 
 
 def run_sweep(
@@ -84,6 +99,8 @@ def run_sweep(
     One point may take ``timeout_s`` seconds; one that fails has its row with an ``error``.
     Raises InputError if the configuration is wrong or the folder holds another sweep's results.
     """
+    require_kind("config", config, Mapping, Config, str, Path)
+    _check(workers, cluster, timeout_s, out)
     if isinstance(config, str | Path):
         config = load_config(config)
     elif not isinstance(config, Config):
@@ -97,7 +114,17 @@ def run_sweep(
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
         tables = _run(plan, results, own, folder, watcher or Watcher())
-    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]))
+    return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]), folder)
+
+
+def _check(workers: object, cluster: object, timeout_s: object, out: str | Path | None) -> None:
+    """Raise ConfigError for arguments that can't be."""
+    require_whole("workers", workers, 1)
+    require_kind("cluster", cluster, str, NoneType)
+    require_kind("out", out, str, Path, NoneType)
+    require_kind("timeout_s", timeout_s, float, int, NoneType)
+    if isinstance(timeout_s, float | int) and not timeout_s > 0:
+        raise ConfigError(f"timeout_s: value {shown(timeout_s)}: expected seconds above 0")
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:

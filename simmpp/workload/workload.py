@@ -14,12 +14,15 @@ from typing import Any, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.documented import documented
+
 PRIMARY, REFLECTED, REFRACTED, SHADOW = range(4)
 RAY_KINDS = ("primary", "reflected", "refracted", "shadow")
 SPHERE, CONE, POLYGON, MESH = range(4)
 OBJECT_KINDS = ("sphere", "cone", "polygon", "mesh")
 
 
+@documented
 @dataclass(frozen=True, eq=False)
 class Workload:
     """All rays of a picture with their itineraries (CSR), and what a machine must know of objects.

@@ -93,7 +93,7 @@ def test_run_writes_rows_and_record() -> None:
     assert simmpp("run", "c.yaml", "--out", "a/b").exit_code == 0
     with open("a/b/results.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == result_columns(packs=True)
+    assert tuple(rows[0]) == result_columns()
     assert [row["policy"] for row in rows if row["scene"] == "tetra:2"] == [
         "concurrent", "object", "ray", "replicated",
     ]  # fmt: skip

@@ -51,9 +51,9 @@ def test_what_is_no_count(value: object) -> None:
 
 
 def test_what_is_no_share_and_no_word() -> None:
-    for value in (NAN, INF, -0.1, 1.1, Fraction(3, 2), "1", None, True):
+    for value in (NAN, INF, -0.1, 1.1, Fraction(3, 2), "1 GB", "150%", None, True):
         refused(simmpp.Memory, fraction=value)
-    for value in (NAN, 0.5, -1, Fraction(-1, 2), 2**31, "12%", None):
+    for value in (NAN, 0.5, -1, Fraction(-1, 2), 2**31, "12", "120%", None):
         refused(simmpp.PolicyParameters, "concurrent", min_load=value)
     for call, name in (
         (simmpp.Picture, "samples"),

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
+from simmpp.common.documented import documented
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.records import BINS, NONE, SIZES, Row, Run
 from simmpp.engine.arrays.views import (
@@ -32,6 +33,7 @@ from simmpp.machine.messages import RAYS
 Ints = NDArray[np.int64]
 
 
+@documented
 class Counters(NamedTuple):
     """Counts of one run; integers, times in ps."""
 

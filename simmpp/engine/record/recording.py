@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from simmpp.common.documented import documented
 from simmpp.engine.record.log import Sink
 
 
+@documented
 @dataclass(frozen=True)
 class Recording:
     """What a run notes down besides its totals; nothing by default."""

@@ -116,14 +116,19 @@ def _once(experiments: Mapping[str, list[Row]]) -> list[Row]:
 def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     """The rows of a ``results.csv`` with numbers as such, and the columns of further keys."""
     texts = _table(path, COLUMNS)
-    further = tuple(name for name in (texts[0] if texts else ()) if name not in (*COLUMNS, *PACKED))
-    if len({row[METHOD] for row in texts}) > 1:
-        further = (*further, METHOD)
+    further = further_of(texts)
     rows = [_typed(row, path, line) for line, row in enumerate(texts, 2)]
     for line, row in enumerate(rows, 2):
         if not row["error"] and row["makespan_ps"] == "":
             raise ConfigError("expected results or an error", where=str(path), line=line)
     return rows, further
+
+
+def further_of(rows: Sequence[Row]) -> tuple[str, ...]:
+    """The columns of further keys, and the method where it changes."""
+    names = rows[0] if rows else ()
+    further = tuple(name for name in names if name not in (*COLUMNS, *PACKED))
+    return (*further, METHOD) if len({row[METHOD] for row in rows}) > 1 else further
 
 
 def _table(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:

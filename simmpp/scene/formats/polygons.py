@@ -40,19 +40,28 @@ def triangulated(polygons: Polygons, source: Source) -> tuple[Indices, Indices]:
     for size in np.unique(polygons.sizes[polygons.sizes >= 3]).tolist():
         numbers = np.flatnonzero(polygons.sizes == size)
         corners = polygons.corners[starts[numbers][:, None] + np.arange(size)]
-        convex = are_convex(polygons.vertices[corners]) if size > 3 else np.True_
+        convex = _are_fans(polygons.vertices, corners)
         steps = np.arange(1, size - 1)
         fan = np.stack([np.zeros_like(steps), steps, steps + 1], axis=1)
-        rows = np.flatnonzero(np.broadcast_to(convex, len(numbers)))
-        faces.append(corners[rows][:, fan].reshape(-1, 3))
-        owners.append(np.repeat(numbers[rows], len(fan)))
-        for row in np.flatnonzero(np.broadcast_to(~convex, len(numbers))):
-            tiles = corners[row][polygon_faces(polygons.vertices[corners[row]])]
+        faces.append(corners[convex][:, fan].reshape(-1, 3))
+        owners.append(np.repeat(numbers[convex], len(fan)))
+        for number, row in zip(numbers[~convex], corners[~convex], strict=True):
+            tiles = row[polygon_faces(polygons.vertices[row])]
             faces.append(tiles)
-            owners.append(np.full(len(tiles), numbers[row]))
+            owners.append(np.full(len(tiles), number))
     owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
     return np.concatenate(faces)[order], owner[order]
+
+
+def _are_fans(vertices: Floats, corners: Indices) -> NDArray[np.bool_]:
+    """Which polygons (k, n) need not be looked at one by one."""
+    n_polygons, size = corners.shape
+    if size == 3:
+        return np.ones(n_polygons, dtype=np.bool_)
+    if size > n_polygons:  # arrays don't pay, and a polygon may have a million corners
+        return np.zeros(n_polygons, dtype=np.bool_)
+    return are_convex(vertices[corners])
 
 
 def are_convex(points: Floats) -> NDArray[np.bool_]:

@@ -16,14 +16,17 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
+from simmpp.common.units import share
+from simmpp.common.validate import require_kind, require_whole
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import DEFAULT_ENGINE, simulate
 from simmpp.machine.machine import Machine
 from simmpp.placement.place import rotated
 from simmpp.placement.placement import Placement, PlacementRules
 from simmpp.placement.residents import resident_count
-from simmpp.policy.parameters import REFERENCE, PolicyParameters
+from simmpp.policy.parameters import REFERENCE, PolicyParameters, policy_of
 from simmpp.run.profit import ratio
 from simmpp.studies.curve.smooth import smooth
 from simmpp.workload.workload import Workload
@@ -38,16 +41,23 @@ APART = Fraction(1, 25)
 Floats = NDArray[np.float64]
 
 
+@documented
 @dataclass(frozen=True)
 class Estimate:
     """The profits of one policy at one fraction, each with its standard error."""
 
     policy: str
+    """Its label or name."""
     fraction: Fraction
+    """Share of the scene on each PE, as asked for."""
     time_profit: float
+    """Makespan of object dataflow / makespan of the policy."""
     time_error: float
+    """Standard error of the time profit; 0 where nothing is drawn."""
     message_profit: float
+    """Messages of object dataflow / messages of the policy."""
     message_error: float
+    """Standard error of the message profit; 0 where nothing is drawn."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +75,8 @@ class Node:
 def estimate(
     workload: Workload,
     machine: Machine,
-    policies: Sequence[PolicyParameters],
-    fractions: Sequence[Fraction],
+    policies: Sequence[PolicyParameters | str],
+    fractions: Sequence[Fraction | float | str],
     *,
     rules: PlacementRules | None = None,
     engine: str = DEFAULT_ENGINE,
@@ -82,32 +92,52 @@ def estimate(
 
     Raises ConfigError if owners or pixels are random too, or a number is out of its range.
     """
-    rules = rules or PlacementRules()
+    require_kind("workload", workload, Workload)
+    require_kind("machine", machine, Machine)
+    require_kind("policies", policies, Sequence)
+    named = [policy_of(policy, "policies") for policy in policies]
+    wanted = _checked(fractions, replicates, seed)
+    rules = PlacementRules() if rules is None else rules
+    require_kind("rules", rules, PlacementRules)
     if "random" in (rules.owners, rules.pixels):
         raise ConfigError("curve: random owners or pixels: expected residents alone to be drawn")
-    if not fractions or min(fractions) < 0 or max(fractions) > 1 or replicates < 1:
-        raise ConfigError("curve: expected fractions from 0 to 1, and 1 replicate or more")
 
     def run(placement: Placement, policy: PolicyParameters) -> Result:
         return simulate(
             workload, machine, placement, policy, engine=engine, ready_order=ready_order
         )
 
-    xs = node_fractions(min(fractions))
-    nodes: list[list[Node]] = [[] for _ in policies]
+    xs = node_fractions(min(wanted))
+    nodes: list[list[Node]] = [[] for _ in named]
     for draw in range(seed, seed + replicates):
         placements = rotated(workload, machine.processors, xs, rules, draw)
         for x, placement in zip(xs, placements, strict=True):
             at = share_of(x, workload.n_objects, machine.processors)
             reference = run(placement, PolicyParameters(REFERENCE))
-            for of_policy, policy in zip(nodes, policies, strict=True):
+            for of_policy, policy in zip(nodes, named, strict=True):
                 of_policy.append(node_of(placement, at, reference, run(placement, policy)))
-    shares = np.array([share_of(x, workload.n_objects, machine.processors) for x in fractions])
+    shares = np.array([share_of(x, workload.n_objects, machine.processors) for x in wanted])
     return [
         Estimate(policy.title, fraction, *numbers)
-        for policy, of_policy in zip(policies, nodes, strict=True)
-        for fraction, *numbers in zip(fractions, *profits_at(shares, of_policy), strict=True)
+        for policy, of_policy in zip(named, nodes, strict=True)
+        for fraction, *numbers in zip(wanted, *profits_at(shares, of_policy), strict=True)
     ]
+
+
+def _checked(
+    fractions: Sequence[Fraction | float | str], replicates: int, seed: int
+) -> list[Fraction]:
+    """The fractions as such; numbers out of their range are a ConfigError."""
+    require_kind("fractions", fractions, Sequence)
+    require_whole("seed", seed, 0)
+    try:
+        require_whole("replicates", replicates, 1)
+        wanted = [share(fraction) for fraction in fractions]
+    except ConfigError:
+        wanted = []
+    if not wanted:
+        raise ConfigError("curve: expected fractions from 0 to 1, and 1 replicate or more")
+    return wanted
 
 
 def node_fractions(least: Fraction) -> list[Fraction]:

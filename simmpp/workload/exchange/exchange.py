@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from simmpp.common.errors import WorkloadError
 from simmpp.common.files import in_utf8, refuse_special
 from simmpp.common.units import LONGEST_PS
+from simmpp.common.validate import require_kind
 from simmpp.workload.check import check
 from simmpp.workload.exchange import npz
 from simmpp.workload.exchange.columns import (
@@ -46,6 +47,7 @@ def import_workload(path: str | os.PathLike[str]) -> Workload:
 
     Raises WorkloadError, one line that names file, column, row, value and what was expected.
     """
+    require_kind("path", path, str, os.PathLike)
     path = Path(path)
     tables = _read(path)
     arrays = rays_of(tables.rays, tables.objects.rows) | _objects_of(tables.objects)
@@ -68,6 +70,8 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
     Raises WorkloadError if the name ends in neither .parquet nor .npz, OSError if it can't be
     written.
     """
+    require_kind("workload", workload, Workload)
+    require_kind("path", path, str, os.PathLike)
     path = Path(path)
     finite = np.isfinite(workload.hit_distances)
     rays: dict[str, Column] = {

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
+from simmpp.common.validate import require_kind
 from simmpp.scene.boxes import boxes
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
@@ -73,6 +74,8 @@ def trace(
     ConfigError
         The picture has more than MOST_RAYS rays, or more than the machine's memory holds.
     """
+    require_kind("scene", scene, Scene)
+    require_kind("picture", picture, Picture)
     check_scene(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)

@@ -82,10 +82,10 @@ def test_shapes() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"preset": "t3x"}, "value 't3x': expected a preset: bluegene-l, t3d, t3e"),
-        ({"preset": "../t3e"}, "value '../t3e': expected a preset"),
+        ({"preset": "t3x"}, "preset: value 't3x': expected one of bluegene-l, t3d"),
+        ({"preset": "../t3e"}, "preset: value '../t3e': expected one of"),
         ({"processors": 0}, "processors: value 0: expected an integer from 1 to 65536"),
-        ({"shape": (4, 4, 5)}, "value [4, 4, 5]: expected three integers whose product is"),
+        ({"shape": (4, 4, 5)}, "shape: value [4, 4, 5]: expected three integers whose product is"),
         (
             {"overrides": {"sned_startup": "1 us"}},
             "unknown key 'sned_startup': did you mean 'send_startup'?",

@@ -24,7 +24,7 @@ from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows
 
-NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
+NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98" / "plain"
 HOSTILE = '</script><script>document.title="broken"</script>" \' & {{ 7 * 7 }} <!--'
 
 

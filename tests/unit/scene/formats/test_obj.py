@@ -61,6 +61,7 @@ def test_negative_indices_count_from_where_they_stand(tmp_path: Path) -> None:
 
 REFUSED = [
     (TRIANGLE + "f 0 1 2\n", 4, "a face names vertex 0, expected 1 to 3, or -1 to -3"),
+    (TRIANGLE + "f 0 1 2\nv 9 9 9\n", 4, "a face names vertex 0, expected 1 to 4, or -1 to -3"),
     (TRIANGLE + "f 1 2 9\n", 4, "names vertex 9"),
     (TRIANGLE + "f -4 -2 -1\nv 1 1 1\n", 4, "names vertex -4, expected 1 to 4, or -1 to -3"),
     (TRIANGLE + "f 1 2\n", 4, "a face needs three vertices"),
@@ -122,6 +123,12 @@ def test_one_material_needs_no_name(tmp_path: Path) -> None:
     (tmp_path / "one.mtl").write_text("newmtl red\nKd 1 0 0\n")
     text = "mtllib one.mtl\n" + TRIANGLE + "o a\nusemtl red\n" + FACE + "o\n" + FACE
     assert named(tmp_path, text) == [("a", RED), ("a.obj", RED)]
+
+
+def test_a_library_of_two_names_both(tmp_path: Path) -> None:
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n")
+    text = "mtllib two.mtl\n" + TRIANGLE + "o a\nusemtl red\n" + FACE
+    assert named(tmp_path, text) == [("a_red", RED)]
 
 
 LIBRARIES = {

@@ -32,7 +32,9 @@ def polygons(draw: Any, reals: st.SearchStrategy[Any]) -> tuple[list[Any], list[
     """Vertices and polygons, flat ones and bent ones, some whose edges cross."""
     vertices = draw(st.lists(st.tuples(reals, reals, reals), min_size=3, max_size=9))
     corners = st.integers(0, len(vertices) - 1)
-    faces = st.lists(st.lists(corners, min_size=3, max_size=7), min_size=1, max_size=4)
+    few = st.lists(st.lists(corners, min_size=3, max_size=7), min_size=1, max_size=4)
+    alike = st.lists(st.lists(corners, min_size=4, max_size=4), min_size=4, max_size=9)
+    faces = few | alike
     return [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), *vertices], [[0, 1, 2], *draw(faces)]
 
 
