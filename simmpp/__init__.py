@@ -9,6 +9,11 @@ What the commands do, from Python::
     machine = simmpp.make_machine("t3e", processors=64)
     placement = simmpp.place(workload, 64, simmpp.Memory(), simmpp.PlacementRules(), seed=0)
     result = simmpp.simulate(workload, machine, placement, simmpp.PolicyParameters("concurrent"))
+
+Parts that are made one by one are as they say and know no reading: a machine has the constants of
+its preset, and what ``Memory``, ``PlacementRules`` and ``PolicyParameters`` are not told has the
+default of their fields. ``sweep`` takes a configuration, whose defaults are those of the reading
+that it names, or of the default reading (``simmpp reading``).
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import click
 
 from simmpp.common.errors import InputError, ModelError
+from simmpp.common.interrupts import last_word
 
 COMMANDS = {
     "run": "Compare dataflow policies at one point.",
@@ -31,9 +32,9 @@ COMMANDS = {
 ``run`` is ``run_command`` of simmpp.commands.run, and so on.
 """
 
-INPUT_ERROR, MODEL_ERROR, INTERRUPTED, READER_GONE = 2, 70, 130, 141
-"""Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), Ctrl-C (128 + SIGINT), and a
-pipe that nobody reads any more, as with ``| head`` (128 + SIGPIPE)."""
+INPUT_ERROR, MODEL_ERROR, READER_GONE = 2, 70, 141
+"""Exit codes: a wrong input, a bug (EX_SOFTWARE of BSD's sysexits), a pipe that nobody reads any
+more, as with ``| head`` (128 + SIGPIPE). Ctrl-C gives 130, SIGTERM 143."""
 
 
 class Commands(click.Group):
@@ -75,8 +76,8 @@ class Commands(click.Group):
             _quit(f"error: {error.filename or 'output'}: {error.strerror or error}", INPUT_ERROR)
         except ModelError as error:
             _quit(f"this is a bug, please report it: {error}", MODEL_ERROR)
-        except KeyboardInterrupt:
-            _quit("interrupted", INTERRUPTED)
+        except KeyboardInterrupt as interrupt:
+            _quit(*last_word(interrupt))
         except MemoryError:
             _quit("error: out of memory: expected a smaller scene or resolution", INPUT_ERROR)
 

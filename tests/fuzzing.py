@@ -7,6 +7,7 @@ import os
 import signal
 import tempfile
 import warnings
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
@@ -22,6 +23,8 @@ from simmpp.cli import main
 DEADLINE_S = 30
 """No example below takes a second; this is a hang."""
 LONGEST_LINE = 1000
+TRIED = Counter[str]()
+"""Examples by what became of them; printed at the end of the run."""
 
 
 def examples(few: int) -> settings:

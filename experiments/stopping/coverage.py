@@ -80,6 +80,7 @@ def profits_of(point: tuple[str, int, float], grid: dict[str, Any]) -> Floats:
         resolution = resolution.get(scene, PIXELS)
     config = {
         "scene": scene,
+        "reading": "plain",
         "picture": {"resolution": resolution},
         "processors": nb,
         "memory": {"fraction": x},

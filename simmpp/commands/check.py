@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,9 +12,10 @@ import click
 
 from simmpp.commands import options
 from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import FAILED, notice, output, table
+from simmpp.commands.terminal import FAILED, notice, output, progress_bars, table
 from simmpp.common.errors import ConfigError
-from simmpp.common.files import write_csv
+from simmpp.common.files import copy, write_csv
+from simmpp.common.folders import BASELINE, CHECK
 from simmpp.config.config import Config, load_config
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.baseline import (
@@ -50,7 +51,7 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
 @options.path(
     "--out",
-    "Folder for what came out: the tables, moved.csv, and the curves over the baseline's.",
+    "Folder for what came out: the tables, moved.csv, and curves that moved over the baseline's.",
 )
 @options.workers("Processes, as for sweep.")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, as for sweep.")
@@ -81,7 +82,8 @@ def check_command(
     trial = load_config(config_path, (*overrides, *engine))
     before = None if update else read_baseline(baseline, config)
     target = baseline_folder(baseline)
-    options.folder(out, "--out")
+    options.claim(out, "--out", CHECK)
+    options.claim(target if update else None, "--baseline", BASELINE)
     with TemporaryDirectory(prefix="simmpp-check-") as temporary:
         now = _swept(trial, workers, cluster, Path(temporary))
         if before is None:
@@ -151,22 +153,28 @@ def _print(moved: Sequence[Move], why: Sequence[str]) -> None:
 
 
 def _rounded(line: Mapping[str, str]) -> dict[str, str]:
-    """Profits with as many digits as people read."""
+    """Profits with as many digits as people read; errors, which may hold anything, as they are."""
     cells = dict(line)
     for side in ("baseline", "now"):
-        if "." in cells[side]:
-            cells[side] = f"{float(cells[side]):.5g}"
+        with suppress(ValueError):
+            if "." in cells[side]:
+                cells[side] = f"{float(cells[side]):.5g}"
     return cells
 
 
 def _write(moved: Sequence[Move], baseline: Sweep, now: Sweep, obtained: Path, out: Path) -> None:
-    """What a failed check leaves for people: tables and a picture."""
-    # Only --out draws, and matplotlib takes half a second.
-    from simmpp.report.page.overlay import overlay
-
+    """What a check leaves for people: tables, and a picture of the curves that moved."""
     for name in (PROFITS, RESULTS, RECORD):
-        shutil.copyfile(obtained / name, out / name)
+        copy(obtained / name, out / name)
     cells = lines(moved)
     columns = list(cells[0]) if cells else ["measure", "baseline", "now", "change", "allowed"]
     write_csv(cells, columns, out / MOVED_CSV)
-    overlay(baseline.profits, now.profits, out / OVERLAY)
+    for suffix in (".png", ".svg"):
+        (out / f"{OVERLAY}{suffix}").unlink(missing_ok=True)  # of an earlier check
+    if moved:
+        # Only this draws, and matplotlib takes half a second.
+        from simmpp.report.page.overlay import overlay
+
+        with progress_bars() as bars:
+            bars.add_task("drawing", total=None)
+            overlay(baseline.profits, now.profits, out / OVERLAY)

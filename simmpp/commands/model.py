@@ -11,6 +11,7 @@ from simmpp.commands import options
 from simmpp.commands.terminal import notice, output, table
 from simmpp.commands.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
+from simmpp.common.folders import MODEL
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.model.analytical import Makespans, rays_of
@@ -68,7 +69,7 @@ def model_command(
     ratios, and the border.
     """
     config = load_config(config_path, overrides)
-    options.folder(out, "--out")
+    options.claim(out, "--out", MODEL)
     ratios = _ratios(ratio_texts)
     grid = model_grid(config)
     if grid.left_out:

@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.folders import claimed, held
 from simmpp.common.units import picoseconds
 
 ENGINES = ("compiled", "simpy")
@@ -141,6 +142,17 @@ def folder(path: Path | None, option: str) -> None:
         raise ConfigError(f"{option}: value {str(path)!r}: can't make it: {reason}") from None
     if not os.access(path, os.W_OK):
         raise ConfigError(f"{option}: value {str(path)!r}: expected a folder that can be written")
+
+
+def claim(path: Path | None, option: str, kind: str | None = None) -> None:
+    """Make the folder and hold it until the command ends; see :mod:`simmpp.common.folders`.
+
+    Commands whose work does so itself, as for those who call it from Python, ask for a ``folder``.
+    """
+    folder(path, option)
+    if path is not None:
+        holding = held(path) if kind is None else claimed(path, kind)
+        click.get_current_context().with_resource(holding)
 
 
 def window_of(text: str, option: str) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, as_completed
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -11,12 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.commands import options
+from simmpp.commands.terminal import progress_bars
 from simmpp.common.errors import ConfigError
+from simmpp.common.modules import PICTURES
 from simmpp.engine.record.log import Sink
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.report.run_figures.recorder import FiguresRecorder
 from simmpp.report.timeline.recorder import SUFFIXES, TimelineRecorder
 from simmpp.report.timeline.slices import Window
 from simmpp.run.point import Point, PolicyRun
+from simmpp.sweeps.executors import processes
 
 
 class Looks(NamedTuple):
@@ -61,12 +66,23 @@ def recorders_of(point: Point, looks: Looks) -> Iterator[list[Recorder]]:
             timeline = TimelineRecorder(looks.timeline, point.machine, window)
             stack.callback(timeline.close)
             recorders.append(timeline)
+        figures: FiguresRecorder | None = None
         if looks.figures is not None:
-            # Only --figures draws, and matplotlib takes half a second.
-            from simmpp.report.run_figures.recorder import FiguresRecorder
-
-            recorders.append(FiguresRecorder(looks.figures, point))
+            executor = stack.enter_context(processes(options.available_cores(), PICTURES))
+            figures = FiguresRecorder(looks.figures, point, executor)
+            recorders.append(figures)
         yield recorders
+        if figures is not None:
+            _wait_for(figures.drawings)
+
+
+def _wait_for(drawings: Sequence[Future[list[Path]]]) -> None:
+    """Until all pictures are drawn, with a bar."""
+    with progress_bars() as bars:
+        task = bars.add_task("drawing", total=len(drawings))
+        for drawing in as_completed(drawings):
+            drawing.result()
+            bars.advance(task)
 
 
 def sink_of(recorders: Sequence[Recorder], policy: PolicyParameters) -> Sink | None:

@@ -1,43 +1,61 @@
-"""``simmpp report``: the rows of a folder as one page, and its figures as files."""
+"""``simmpp report``: the rows of a folder as one page; its figures as files, if asked for."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
 from simmpp.commands import options
 from simmpp.commands.terminal import notice, progress_bars
+from simmpp.common.units import counted
 from simmpp.report.page.beside import FIGURES_FOLDER
-from simmpp.report.page.figures.stills import write_stills
+from simmpp.report.page.figures.stills import Still, stills_of, write_stills
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.report import PAGE, Report, follow, report_of, write_page
+from simmpp.report.page.report import PAGE, follow, report_of, write_page
 
 
 @click.command(
     "report",
-    epilog=options.examples("simmpp report results/sweep", "simmpp report --live results/sweep"),
+    epilog=options.examples(
+        "simmpp report results/sweep",
+        "simmpp report results/sweep --figures time-profit --figures speedup",
+        "simmpp report --live results/sweep",
+    ),
 )
 @click.argument("folder_path", metavar="DIR", type=options.NamedPath())
+@click.option(
+    "--figures",
+    "names",
+    multiple=True,
+    metavar="[all|NAME]",
+    help="Draw this figure in DIR/figures too, as PNG and SVG; the page has the names. Repeatable.",
+)
 @click.option(
     "--live",
     is_flag=True,
     help="Keep the page up to date while a sweep works in DIR; ends with it, or with Ctrl-C.",
 )
-def report_command(folder_path: Path, live: bool) -> None:
+def report_command(folder_path: Path, names: tuple[str, ...], live: bool) -> None:
     """Make a page of what sweep, run, bench or reproduce wrote.
 
     DIR is their folder. Writes DIR/report.html, which opens in any browser and loads nothing from
     anywhere: who wins where and how surely, the curves, and every number of the point that is
-    clicked on; and each figure in DIR/figures as PNG and SVG.
+    clicked on.
     """
     if live:
         _follow(folder_path, folder_path / PAGE)
     report = report_of(read_folder(folder_path))
+    stills = stills_of(report.figures, names)
+    to = folder_path / FIGURES_FOLDER
+    if stills:
+        options.claim(to, "DIR")  # a sweep may be at work in DIR itself
     options.folder(folder_path, "DIR")
-    page = write_page(report)
+    page = write_page(report, stills=[still.stem for still in stills])
     click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
-    _draw(report)
+    if stills:
+        _draw(stills, to)
 
 
 def _follow(folder_path: Path, page: Path) -> None:
@@ -52,13 +70,10 @@ def _follow(folder_path: Path, page: Path) -> None:
         raise
 
 
-def _draw(report: Report) -> None:
+def _draw(stills: Sequence[Still], to: Path) -> None:
     """The figures as files, with a bar."""
-    to = report.folder.path / FIGURES_FOLDER
-    options.folder(to, "DIR")
-    plates = sum(len(figure.plates) for figure in report.figures)
     with progress_bars() as bars:
-        task = bars.add_task("drawing", total=plates)
-        for _ in write_stills(report.figures, to):
+        task = bars.add_task("drawing", total=len(stills))
+        for _ in write_stills(stills, to, min(len(stills), options.available_cores())):
             bars.advance(task)
-    click.echo(f"{to}: {plates} figures, as PNG and SVG")
+    click.echo(f"{to}: {counted(len(stills), 'figure')}, as PNG and SVG")

@@ -15,12 +15,15 @@ from simmpp.commands.reading import print_reading
 from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.terminal import FAILED, notice, output, progress_bars
 from simmpp.commands.tracing import workload
+from simmpp.common.folders import RUN
+from simmpp.common.modules import PICTURES
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import RECORD, RESULTS, write_rows
 from simmpp.run.summary import summary
+from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
@@ -80,16 +83,19 @@ def run_command(
     """
     config = load_config(config_path, (*overrides, *engine))
     options.writable(picture, "--picture", ".png")
-    options.folder(out, "--out")
+    options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
-    options.folder(figures, "--figures")
+    if figures != out:
+        options.claim(figures, "--figures")
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(
             "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
             "are for simmpp sweep"
         )
+    if figures and options.available_cores() > 1:
+        start_server(PICTURES)  # loads matplotlib while the rays are traced
     looks = Looks(picture, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 

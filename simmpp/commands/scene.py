@@ -9,6 +9,7 @@ import click
 
 from simmpp.commands import options
 from simmpp.commands.terminal import OBJECTS_SHOWN, output, texts
+from simmpp.common.files import write_text
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
 from simmpp.scene.nff import write_nff
@@ -42,7 +43,7 @@ def scene_command(spec: str, nff: Path | None, preview: Path | None, all_objects
     scene = load_scene(spec)
     _list(scene, None if all_objects else OBJECTS_SHOWN)
     if nff:
-        nff.write_text(write_nff(scene), encoding="utf-8", newline="\n")
+        write_text(write_nff(scene), nff)
     if preview:
         _preview(scene, preview)
 

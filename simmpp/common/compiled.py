@@ -11,6 +11,7 @@ import ast
 import hashlib
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
@@ -19,8 +20,12 @@ from typing import Any, TypeVar, cast
 
 import numba
 from filelock import FileLock
+from numba.core.caching import FunctionCache
 from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
+
+from simmpp.common.errors import CacheWarning
+from simmpp.common.interrupts import Uninterrupted
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -35,10 +40,41 @@ class _Compiled(CPUDispatcher):  # type: ignore[misc]
     record's field and for a number written at the call.
     """
 
+    def __call__(self, *args: Any, **kws: Any) -> Any:
+        """Compile if need be, and run; an interrupt waits, for numba would lose it or half a code.
+
+        While it compiles numba calls back Python from LLVM, which knows no exceptions.
+        """
+        with Uninterrupted():
+            return super().__call__(*args, **kws)
+
+    def compile(self, sig: Any) -> Any:
+        """Compile; likewise."""
+        with Uninterrupted():
+            return super().compile(sig)
+
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """What numba asks for a call from compiled code."""
         template, signature, _, rest = super().get_call_template(tuple(map(_widened, args)), kws)
         return template, signature, args, rest
+
+
+class _Kept(FunctionCache):  # type: ignore[misc]
+    """numba's cache on disk; one that is full or breaks costs the next run's time, no more."""
+
+    @contextmanager
+    def _guard_against_spurious_io_errors(self) -> Iterator[None]:
+        """What numba loads and saves within."""
+        try:
+            yield
+        except OSError as error:
+            _tell_of_cache(error.strerror or str(error))
+
+
+@cache  # told once
+def _tell_of_cache(reason: str) -> None:
+    text = f"{cache_folder()}: compiled code is not kept: {reason}"
+    warnings.warn(text, CacheWarning, stacklevel=2)
 
 
 class _Kernel(_Compiled):
@@ -68,7 +104,7 @@ def _cached(function: Function, options: dict[str, bool]) -> Function:
     compiled: Any = _Compiled(function, targetoptions=OPTIONS | options)
     with _kept_for(function) as kept:
         if kept:
-            compiled.enable_caching()
+            compiled._cache = _Kept(function)  # what enable_caching does with numba's own
     return cast(Function, compiled)
 
 
@@ -89,8 +125,12 @@ def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     """Compile a function of that numba signature which compiled code calls by its address."""
 
     def compile_now(function: Callable[..., object]) -> object:
-        with _kept_for(function) as kept:
-            return numba.cfunc(signature, cache=kept)(function)
+        with _kept_for(function) as kept, Uninterrupted():
+            try:
+                return numba.cfunc(signature, cache=kept)(function)
+            except OSError as error:
+                _tell_of_cache(error.strerror or str(error))
+                return numba.cfunc(signature)(function)
 
     return compile_now
 

@@ -39,5 +39,9 @@ class WorkloadError(InputError):
     """A workload file can't be read, or contradicts itself."""
 
 
+class CacheWarning(UserWarning):
+    """What would be kept for the next run can't be; this one goes on."""
+
+
 class ModelError(SimmppError):
     """An invariant of the simulated machine broke; the message holds the state."""

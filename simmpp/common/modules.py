@@ -8,6 +8,13 @@ PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
 ENGINE = "simmpp.engine.compiled_engine"
 PRELOAD = "simmpp.sweeps.preload"
+PANELS = "simmpp.plot.matplotlib_panels"
+PICTURES = "simmpp.report.run_figures.drawing"
 NOTEBOOK = "simmpp.notebook"
+SERVED = "SIMMPP_SERVED"
+"""What PRELOAD reads: the variable of the environment with the process that it is imported for."""
 
-NAMED_MODULES = (TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE, PRELOAD, NOTEBOOK)
+NAMED_MODULES = (
+    *(TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE),
+    *(PRELOAD, PANELS, PICTURES, NOTEBOOK),
+)

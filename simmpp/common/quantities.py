@@ -64,7 +64,7 @@ _A_SIZE = Expect(
 _A_BANDWIDTH = Expect(
     units.A_BANDWIDTH,
     BANDWIDTH,
-    "B/s, kB/s, MB/s, GB/s or TB/s",
+    "B/s, kB/s, MB/s, GB/s or TB/s; in bits, 8 to a byte: bit/s, kbit/s, Mbit/s, Gbit/s or Tbit/s",
     " to ".join(map(units.format_bytes_per_s, (units.LEAST_BYTES_PER_S, units.MOST_BYTES_PER_S))),
     units.write_bytes_per_s,
     "an integer of bytes per second, 0 for unlimited",

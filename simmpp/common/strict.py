@@ -30,6 +30,7 @@ from pydantic_core.core_schema import CoreSchema
 
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
+from simmpp.common.files import in_utf8
 from simmpp.common.places import KeyPath, Place, misplaced, unknown
 from simmpp.common.units import shown
 from simmpp.common.validate import whole
@@ -179,8 +180,8 @@ def one_of(*words: str) -> tuple[BeforeValidator, Expect]:
 
 
 def is_line(value: object) -> bool:
-    """Is it a text of one line?"""
-    return isinstance(value, str) and bool(value) and value.isprintable()
+    """Is it a text of one line? A file's name may hold bytes that are none in UTF-8."""
+    return isinstance(value, str) and bool(value) and in_utf8(value).isprintable()
 
 
 Switch = Annotated[bool, *only(lambda value: isinstance(value, bool), Expect("true or false"))]

@@ -27,13 +27,14 @@ LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 9 * 10**15
 
 A_TIME = "a time such as '12 us'"
 A_SIZE = "a size such as '64 MB'"
-A_BANDWIDTH = "a bandwidth such as '340 MB/s', or 'unlimited'"
+A_BANDWIDTH = "a bandwidth such as '340 MB/s' or '10 Gbit/s', or 'unlimited'"
 A_SHARE = "a share from 0 to 1, such as 0.1, 10% or 1/64"
 
 _DEFINITIONS = [
     "second = [time] = s",
     "minute = 60 * second = min",
     "byte = [information] = B",
+    "bit = [bits] = b",  # no part of a byte: '64 Mb' of memory would be a mistake for MB
     "pico- = 1e-12 = p-",
     "nano- = 1e-9 = n-",
     "micro- = 1e-6 = u- = µ- = μ-",
@@ -56,7 +57,7 @@ _SHARE = re.compile(rf"\s*({NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
 
 @cache
 def _registry() -> pint.UnitRegistry[Fraction]:
-    """Pint with these units only and exact fractions; its own list knows barns, not bits."""
+    """Pint with these units only and exact fractions; its own list knows barns, too."""
     import pint  # takes a quarter of a second
 
     return pint.UnitRegistry(_DEFINITIONS, non_int_type=Fraction)
@@ -77,11 +78,20 @@ def _in(text: str, unit: str) -> Fraction | None:
 
 
 def _quantity(
-    value: object, unit: str, expected: str, most: int, in_text: Callable[[int], str]
+    value: object,
+    unit: str,
+    expected: str,
+    most: int,
+    in_text: Callable[[int], str],
+    eighth: str = "",
 ) -> Fraction:
+    """A number of ``unit``; what is given in an ``eighth`` of it, too."""
     if type(value) is int and value == 0:
         return Fraction(0)
     number = _in(value, unit) if isinstance(value, str) else None
+    if number is None and isinstance(value, str) and eighth:
+        eighths = _in(value, eighth)
+        number = None if eighths is None else eighths / 8
     if number is None:
         raise ConfigError(f"value {shown(value)}: expected {expected}")
     if number > most:
@@ -115,14 +125,15 @@ def byte_count(value: object) -> int:
 
 
 def bytes_per_second(value: object) -> int:
-    """``"340 MB/s"`` -> 340000000, ``"unlimited"`` -> UNLIMITED.
+    """``"340 MB/s"`` -> 340000000, ``"1 Gbit/s"`` -> 125000000, ``"unlimited"`` -> UNLIMITED.
 
+    A capital B is a byte, b or bit an eighth of it: ``"1 Gb/s"`` is ``"0.125 GB/s"``.
     Raises ConfigError for anything else but at least 1 kB/s: a bandwidth of nothing never ends.
     """
     if value == "unlimited":
         return UNLIMITED
-    unit = "byte / second"
-    rate = half_up(_quantity(value, unit, A_BANDWIDTH, MOST_BYTES_PER_S, format_bytes_per_s))
+    bounds = MOST_BYTES_PER_S, format_bytes_per_s
+    rate = half_up(_quantity(value, "byte / second", A_BANDWIDTH, *bounds, "bit / second"))
     if rate < LEAST_BYTES_PER_S:
         raise ConfigError(f"value {shown(value)}: expected {A_BANDWIDTH}, at least 1 kB/s")
     return rate

@@ -86,9 +86,17 @@ def parse_yaml(text: str, where: str = "") -> Document:
     return document
 
 
+_AWAY = {byte: 0x100000 + byte for byte in range(0xDC80, 0xDD00)}
+_BACK = {private: byte for byte, private in _AWAY.items()}
+"""Bytes of file names that are no text, as Python has them, and characters that YAML accepts."""
+
+
 def _stream(text: str) -> Iterator[events.Event]:
     try:
-        yield from YAML(typ="safe", pure=True).parse(text)
+        for event in YAML(typ="safe", pure=True).parse(text.translate(_AWAY)):
+            if isinstance(event, events.ScalarEvent):
+                event.value = event.value.translate(_BACK)
+            yield event
     except YAMLError:
         raise
     except Exception as error:  # the parser trips over some texts, e.g. "\\U99999999"

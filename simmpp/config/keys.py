@@ -76,7 +76,8 @@ def default_of(name: str, expected: Expect, value: Any, reading: Reading | None 
         texts = [text for text in texts if not text.startswith(f"{default} for ")]
     costs = reading.costs.get(DEFAULT_PRESET) if part == MACHINE else None
     if costs and (text := costs.text(key, expected.write)):
-        texts = [f"{text} ({DEFAULT_PRESET})"]
+        cost = f"{text} ({DEFAULT_PRESET})"
+        return default if cost == default else f"{cost[:-1]}, reading {reading.name})"
     return default if texts == [default] else f"{', '.join(texts)} (reading {reading.name})"
 
 

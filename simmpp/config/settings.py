@@ -82,7 +82,7 @@ def _axes(value: object) -> object:
     return value
 
 
-DEFAULT_READING = "plain"
+DEFAULT_READING = "mixed"
 """What holds where a configuration names none."""
 _READING = "a reading of the package such as plain, or a file such as readings/own.yaml"
 ReadingName = Annotated[str, *only(is_line, Expect(_READING, {"type": "string", "minLength": 1}))]

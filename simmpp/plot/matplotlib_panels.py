@@ -10,10 +10,14 @@ from typing import Any
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.image import imsave
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
+from simmpp.common.files import replaced
 from simmpp.plot.curves import Bars, Curve, Panel, Scale, Stated
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -83,11 +87,22 @@ def drawing(panels: Sequence[Panel | Bars]) -> Drawing:
 
 
 def save(figure: Figure, stem: Path) -> list[Path]:
-    """Write a figure as ``stem``.png and ``stem``.svg, without dates."""
+    """Write a figure as ``stem``.png and ``stem``.svg, without dates.
+
+    ``Figure.savefig`` would draw each twice, once only to lay it out; the bytes are the same.
+    """
     png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
-    figure.savefig(png, dpi=DOTS_PER_INCH)
+    dots_of_images = figure.dpi
+    figure.set_dpi(DOTS_PER_INCH)
+    raster: Any = FigureCanvasAgg(figure)
+    raster.draw()
+    with replaced(png) as part:
+        imsave(part, raster.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
     figure.set_layout_engine("none")  # laid out once; the second file is to be the same
-    figure.savefig(svg, metadata={"Date": None})
+    figure.set_dpi(dots_of_images)
+    vector: Any = FigureCanvasSVG(figure)
+    with replaced(svg) as part:
+        vector.print_svg(part, metadata={"Date": None})
     return [png, svg]
 
 
@@ -109,7 +124,8 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         axes.set_ylim(bottom=0)
     if any(curve.notes for curve in panel.curves):
         axes.margins(y=0.14)  # room for what is written above the highest point
-    axes.set_title(f"{panel.title}\n{panel.note}" if panel.note else panel.title, fontsize=9)
+    title = f"{panel.title}\n{panel.note}" if panel.note else panel.title
+    axes.set_title(title, fontsize=9, y=1)  # else it is placed four times, after all ticks
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
     if panel.curves:

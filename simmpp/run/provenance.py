@@ -12,7 +12,7 @@ from typing import Any
 from simmpp.common.compiled import source_digest
 from simmpp.common.modules import METHODS, PLACEMENT, TRACER
 
-LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "trimesh", "mapbox-earcut")
+LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "mapbox-earcut")
 """Libraries that rays, draws and simulated times pass through."""
 DECIDING = (TRACER, PLACEMENT, METHODS)
 """Modules that, with all that they import, decide what results are."""

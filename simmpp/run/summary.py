@@ -20,7 +20,7 @@ Cell = Callable[[PolicyRun], str]
 
 
 def summary(point: Point, runs: Sequence[PolicyRun]) -> Group:
-    """What was simulated, the table, the bound, and which rules never fired."""
+    """What was simulated, the table, the bound, and what the user may not expect of the runs."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("", no_wrap=True)
     for run in runs:
@@ -131,9 +131,19 @@ def _best_classical(runs: Sequence[PolicyRun]) -> str:
     return "; ".join([named, *(f"{title} takes {n} times as long" for title, n in times.items())])
 
 
+def _idle_at_first(point: Point) -> list[str]:
+    """How many PEs have no pixel, where there are such: more PEs than rows, or than pixels."""
+    nb, (rows, columns) = point.machine.processors, point.workload.picture
+    if not (idle := nb - len(np.unique(point.placement.pixel_pes))):
+        return []
+    by_rows = point.config.settings.placement.pixels == "rows"
+    picture = counted(rows, "row") if by_rows else f"{columns} x {rows} pixels"
+    return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
+
+
 def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
-    notes = [bound, _best_classical(runs)]
+    notes = [bound, _best_classical(runs), *_idle_at_first(point)]
     notes += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

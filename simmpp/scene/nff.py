@@ -15,13 +15,13 @@ from typing import NoReturn
 
 import numpy as np
 
-from simmpp.common.errors import SceneError
-from simmpp.common.files import refuse_special
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import EXACT
 from simmpp.scene.nff_words import Words
+from simmpp.scene.packed import name_of, read_whole
 from simmpp.scene.scene import (
     Camera,
     Cone,
+    Floats,
     Light,
     Material,
     MeshPart,
@@ -39,17 +39,15 @@ WHITE: Vector = (1.0, 1.0, 1.0)
 
 
 def load_nff(file: str | PathLike[str]) -> Scene:
-    """The scene of an NFF file, called as the file is; SceneError for one that can't be read."""
+    """The scene of an NFF file, plain or packed by gzip, called as the file is.
+
+    Raises SceneError for one that can't be read.
+    """
     path = Path(file)
-    try:
-        refuse_special(path)
-        data = path.read_bytes()
-    except (OSError, ValueError) as error:  # a null byte in the name is a ValueError
-        reason = getattr(error, "strerror", None) or str(error)
-        raise SceneError(f"can't read the file: {reason}", where=str(path)) from None
+    data = read_whole(path)
     # Comments may hold anything; the words are checked to be ASCII.
     text = data.decode("utf-8-sig", errors="replace")
-    return read_nff(text, name=path.stem, where=str(path))
+    return read_nff(text, name=name_of(path), where=str(path))
 
 
 def read_nff(text: str, *, name: str, where: str) -> Scene:
@@ -122,10 +120,10 @@ class _Reader:
         if words.skip("resolution"):
             side = partial(words.count, "the resolution", 1, MAX_RESOLUTION)
             resolution = side(), side()
-        towards = np.subtract(at, eye)
-        sideways = np.linalg.norm(np.cross(towards, up))
+        towards, upwards = _scaled(np.subtract(at, eye)), _scaled(np.array(up))
+        sideways = np.linalg.norm(np.cross(towards, upwards))
         # "not above" rather than "at most": what overflowed to NaN is no direction either.
-        if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(up):
+        if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(upwards):
             self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
         self.camera = Camera(eye, at, up, angle, hither, resolution)
 
@@ -204,22 +202,29 @@ class _Reader:
         self.words.fail(problem)
 
 
-def write_nff(scene: Scene) -> str:
-    """The scene as NFF text, numbers to six digits; meshes are written triangle by triangle.
+def _scaled(vector: Floats) -> Floats:
+    """The vector with 1 as its largest number, so that squares are neither 0 nor infinite."""
+    largest = np.abs(vector).max()
+    return vector / largest if largest > 0 else vector
 
-    An ``f`` line is written where the material changes, as the SPD's generators do.
+
+def write_nff(scene: Scene) -> str:
+    """The scene as NFF text that reads back as the same geometry, to the last bit.
+
+    Meshes are written triangle by triangle. An ``f`` line is written where the material changes, as
+    the SPD's generators do. Raises SceneError for a scene that NFF can't hold.
     """
     # Fields of a camera and a material are called as the writers of their lines call them.
-    parts = [nff_text.background(scene.background), nff_text.view(**vars(scene.camera))]
+    parts = [EXACT.background(scene.background), EXACT.view(**vars(scene.camera))]
     parts += [
-        nff_text.light(light.position, () if light.colour == WHITE else light.colour)
+        EXACT.light(light.position, () if light.colour == WHITE else light.colour)
         for light in scene.lights
     ]
     current = -1
     for obj in scene.objects:
         if obj.material != current:
             current = obj.material
-            parts.append(nff_text.material(**vars(scene.materials[current])))
+            parts.append(EXACT.material(**vars(scene.materials[current])))
         parts.append(_object_lines(obj))
     return "".join(parts)
 
@@ -227,14 +232,14 @@ def write_nff(scene: Scene) -> str:
 def _object_lines(obj: SceneObject) -> str:
     match obj:
         case Sphere():
-            return nff_text.sphere(obj.centre, obj.radius)
+            return EXACT.sphere(obj.centre, obj.radius)
         case Cone():
-            return nff_text.cone(obj.base, obj.base_radius, obj.apex, obj.apex_radius)
+            return EXACT.cone(obj.base, obj.base_radius, obj.apex, obj.apex_radius)
         case Polygon():
             vertices = obj.vertices.tolist()
             if obj.normals is None:
-                return nff_text.polygon(vertices)
-            return nff_text.patch(vertices, obj.normals.tolist())
+                return EXACT.polygon(vertices)
+            return EXACT.patch(vertices, obj.normals.tolist())
         case MeshPart():
             corners = obj.vertices[obj.faces].tolist()
-            return "".join(nff_text.polygon(triangle) for triangle in corners)
+            return "".join(EXACT.polygon(triangle) for triangle in corners)

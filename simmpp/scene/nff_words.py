@@ -113,7 +113,7 @@ class Words:
     def fail(self, problem: str, *, at_end: bool = False) -> NoReturn:
         """Raise SceneError at the line of the word read last, or at the last line."""
         index = len(self.words) if at_end else self.position - 1
-        raise SceneError(problem, where=self.where, line=self._line(index))
+        raise SceneError(problem, where=self.where, line=line_of_word(self.text, index))
 
     def _fail_in(self, words: list[str], what: str) -> NoReturn:
         """Find the first word that is no usable number, and fail there."""
@@ -128,14 +128,15 @@ class Words:
                 self.fail(f"{problem}, got {self.shown(word)}")
         self.fail(f"expected a number for {what}, but the file ends", at_end=True)
 
-    def _line(self, index: int) -> int:
-        """Line of the word of that index; the last line that has words if there is none."""
-        n_words, last = 0, 1
-        for number, line in enumerate(self.text.split("\n"), start=1):
-            words = line.split()
-            if words:
-                last = number
-            n_words += len(words)
-            if index < n_words:
-                return number
-        return last
+
+def line_of_word(text: str, index: int) -> int:
+    """Line of the word of that index; the last line that has words if there is none."""
+    n_words, last = 0, 1
+    for number, line in enumerate(text.split("\n"), start=1):
+        words = line.split()
+        if words:
+            last = number
+        n_words += len(words)
+        if index < n_words:
+            return number
+    return last

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.documented import documented
+from simmpp.common.files import in_utf8
 
 Vector = tuple[float, float, float]
 Floats = NDArray[np.float64]
@@ -125,6 +126,9 @@ class MeshPart:
     material: int = 0
     name: str = ""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", in_utf8(self.name))
+
 
 SceneObject = Sphere | Cone | Polygon | MeshPart
 
@@ -132,7 +136,10 @@ SceneObject = Sphere | Cone | Polygon | MeshPart
 @documented
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Objects, their materials, lights and a camera; the order of objects is their id."""
+    """Objects, their materials, lights and a camera; the order of objects is their id.
+
+    Its name, as those of objects, is text that can be written, whatever the file's name is.
+    """
 
     name: str
     """Label in tables, e.g. ``mountain:5``."""
@@ -146,3 +153,6 @@ class Scene:
     """From where the picture is taken."""
     background: Vector = (0.0, 0.0, 0.0)
     """Colour of rays that hit nothing."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", in_utf8(self.name))

@@ -52,7 +52,9 @@ def polygon_faces(vertices: Floats) -> Faces:
         return fan
     plane, rings = np.array(flat), np.array([len(flat)], dtype=np.uint32)
     cut = mapbox_earcut.triangulate_float64(plane, rings).reshape(-1, 3).astype(np.int64)
-    if not len(cut):  # no area: the ear clipper finds nothing to cut
+    # Without an area there is nothing to cut; of a quad bent so far that its edges cross, seen
+    # from here, the ear clipper would leave a half.
+    if len(cut) < min(2, len(fan)):
         return fan
     return _oriented(cut, plane)
 

@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
     BrokenExecutor,
@@ -22,12 +23,12 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.modules import PRELOAD
+from simmpp.common.modules import PRELOAD, SERVED
 
 if TYPE_CHECKING:
     from simmpp.sweeps.journal import Outcome
@@ -107,58 +108,105 @@ class LocalProcesses(Pool):
         self.executor, self._leash = _leashed(self._workers)
 
     def close(self) -> None:
-        """Workers end when the leash does, those that are only starting included."""
+        """Workers end when the leash does."""
         self._leash.close()
         self.executor.shutdown(wait=True, cancel_futures=True)
 
 
-def start_server() -> None:
+@contextmanager
+def processes(workers: int, preload: str) -> Iterator[Executor]:
+    """Processes that have loaded a module, for work that is no task; one works right here.
+
+    In the end, also when interrupted, what they are at is finished and the rest is dropped.
+    """
+    if workers == 1:
+        yield SerialExecutor()
+        return
+    executor, leash = _leashed(workers, preload)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+        leash.close()
+
+
+def start_server(preload: str = PRELOAD) -> None:
     """Begin to load what workers need while this process imports the same for a second.
 
-    The workers are forks of this server, so they need not load it again.
+    The workers are forks of this server, so they need not load it again. The terminal sends Ctrl-C
+    to all processes; this one's children are spared, as it ends them.
     """
     if START_METHOD == "forkserver":
         context: Any = multiprocessing.get_context(START_METHOD)
-        context.set_forkserver_preload([PRELOAD])
-        with _sigint(signal.SIG_IGN):  # the terminal sends it to all; the server is spared
-            forkserver.ensure_running()
-
-
-def _leashed(workers: int) -> tuple[Executor, Connection]:
-    """An executor whose processes are there, and what holds them."""
-    from simmpp.common.compiled import cache_folder
-
-    start_server()
-    context: Any = multiprocessing.get_context(START_METHOD)
-    held, leash = context.Pipe(duplex=False)
-    executor = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
-    interrupts: list[int] = []
-    # Ctrl-C while a process starts would leave half of one, which no leash holds yet: it is
-    # noted, and raised when all are there and can be let go
-    with _sigint(lambda number, frame: interrupts.append(number)):
-        wait([executor.submit(os.getpid) for _ in range(workers)])
-    if interrupts:
-        leash.close()
-        executor.shutdown()
-        raise KeyboardInterrupt
-    return executor, leash
+        context.set_forkserver_preload([preload])
+        with _in_environment("PYTHONWARNINGS", "ignore:resource_tracker"):
+            # Tells of what a process that was ended has left, and cleans up. Would the server
+            # begin it, that unblocked the signals.
+            resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # children inherit it
+        try:
+            with _in_environment(SERVED, str(os.getpid())):
+                forkserver.ensure_running()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
-def _sigint(handler: Any) -> Iterator[None]:
-    """Another answer to Ctrl-C, where there is one: in the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, handler)
+def _in_environment(name: str, value: str) -> Iterator[None]:
+    """What processes that are begun here find."""
+    before = os.environ.get(name)
+    os.environ[name] = value
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
+
+
+Leashed = tuple[Executor, Connection]
+"""An executor whose processes are there, and what holds them."""
+
+
+def _leashed(workers: int, preload: str = PRELOAD) -> Leashed:
+    """Begin ``workers`` processes. It takes seconds, but Ctrl-C is heard at once.
+
+    So they are begun in another thread, where no signal can leave half a process behind.
+    """
+    start_server(preload)
+    begun: Future[Leashed] = Future()
+    threading.Thread(target=_begin_processes, args=(workers, begun), daemon=True).start()
+    try:
+        return begun.result()
+    except KeyboardInterrupt:
+        begun.add_done_callback(_let_go)
+        raise
+
+
+def _begin_processes(workers: int, begun: Future[Leashed]) -> None:
+    from simmpp.common.compiled import cache_folder
+
+    try:
+        context: Any = multiprocessing.get_context(START_METHOD)
+        held, leash = context.Pipe(duplex=False)
+        executor = ProcessPoolExecutor(workers, context, _begin, (held, str(cache_folder())))
+        wait([executor.submit(os.getpid) for _ in range(workers)])
+        begun.set_result((executor, leash))
+    except BaseException as error:
+        begun.set_exception(error)
+
+
+def _let_go(begun: Future[Leashed]) -> None:
+    if begun.exception() is None:
+        executor, leash = begun.result()
+        leash.close()
+        executor.shutdown(wait=False)
 
 
 def _begin(held: Connection, cache: str) -> None:
     """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
+    warnings.simplefilter("ignore")  # the parent has told them; here they would be told again
     os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(held,), daemon=True).start()

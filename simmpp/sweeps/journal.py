@@ -13,29 +13,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from filelock import FileLock, Timeout
-
 from simmpp.common.errors import ConfigError
+from simmpp.common.files import naming
 from simmpp.run.provenance import difference
 
-FILE, LOCK = "points.jsonl", "points.jsonl.lock"
+FILE = "points.jsonl"
 FORMAT = 1
-PATIENCE_S = 0.2
-"""Whoever looks whether a sweep is at work holds the lock as well, for less than that."""
-
-
-def is_at_work(folder: Path) -> bool:
-    """Whether a sweep works in a folder now."""
-    lock = folder / LOCK
-    try:
-        if lock.exists():  # the lock file of a sweep that ended stays: without it none ever began
-            with FileLock(lock, timeout=0):
-                pass
-    except Timeout:
-        return True
-    except OSError:  # not ours to write, so it can't be said; nothing here depends on it
-        return False
-    return False
 
 
 @dataclass(frozen=True)
@@ -83,13 +66,12 @@ class Results:
 
 
 class Journal(Results):
-    """The same in one folder, held by one sweep at a time."""
+    """The same in one folder, which whoever opens it has claimed."""
 
     def __init__(self, folder: Path, identity: Mapping[str, Any]) -> None:
         """Open or begin the journal; ``identity`` is JSON data that says what the results are of.
 
-        Raises ConfigError if the folder holds the results of another sweep, or another process
-        works there.
+        Raises ConfigError if the folder holds the results of another sweep.
         """
         super().__init__()
         self.path = folder / FILE
@@ -97,13 +79,8 @@ class Journal(Results):
             self._file: IO[bytes] = open(self.path, "a+b")  # noqa: SIM115
         except OSError as error:
             raise ConfigError(f"can't be written: {error.strerror}", where=str(self.path)) from None
-        self._lock = FileLock(folder / LOCK, timeout=PATIENCE_S)
         try:
-            self._lock.acquire()
             self._read({"format": FORMAT, **identity})
-        except Timeout:
-            self.close()
-            raise ConfigError("another sweep is at work here", where=str(self.path)) from None
         except BaseException:
             self.close()
             raise
@@ -119,14 +96,15 @@ class Journal(Results):
         self._append({"traced": digest, "trace_s": trace_s})
 
     def close(self) -> None:
-        """Let others work in the folder."""
-        self._file.close()
-        self._lock.release()
+        """Nothing is added from now on."""
+        with naming(self.path):  # what a full disk did not take is tried once more
+            self._file.close()
 
     def _append(self, entry: Mapping[str, Any]) -> None:
-        self._file.write(json.dumps(entry, allow_nan=False).encode() + b"\n")
-        self._file.flush()
-        os.fsync(self._file.fileno())  # a flushed line survives this process, not a power cut
+        with naming(self.path):
+            self._file.write(json.dumps(entry, allow_nan=False).encode() + b"\n")
+            self._file.flush()
+            os.fsync(self._file.fileno())  # a flushed line survives this process, not a power cut
 
     def _read(self, identity: Mapping[str, Any]) -> None:
         self._file.seek(0)

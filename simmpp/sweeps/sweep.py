@@ -17,6 +17,7 @@ from simmpp.common.displayed import Displayed
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
+from simmpp.common.folders import SWEEP, claimed
 from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
@@ -108,6 +109,7 @@ def run_sweep(
         config = with_key(config, "engine", engine)
     plan, folder = plan_of(config), None if out is None else Path(out)
     with (
+        claimed(folder, SWEEP),
         closing(_results(plan, folder)) as results,
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
@@ -126,10 +128,7 @@ def _check(workers: object, cluster: object, timeout_s: object, out: str | Path 
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:
-    if folder is None:
-        return Results()
-    folder.mkdir(parents=True, exist_ok=True)
-    return Journal(folder, plan.identity)
+    return Results() if folder is None else Journal(folder, plan.identity)
 
 
 def _pool(workers: int, cluster: str | None, timeout_s: float | None) -> Pool:

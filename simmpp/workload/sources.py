@@ -32,6 +32,7 @@ from simmpp.common.strict import (
 from simmpp.scene.cut import OBJECTS, cut_named
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import load_nff
+from simmpp.scene.packed import kind_of
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd.generators import GENERATORS, find_generator, known_names, load_spd
 from simmpp.workload.exchange.columns import is_workload
@@ -111,7 +112,7 @@ class SceneSettings(Strict):
     nff: Text | None = None
     """An NFF file, relative to the configuration's folder."""
     mesh: Text | None = None
-    """A mesh file that trimesh reads (OBJ, PLY, STL, GLB ...)."""
+    """A mesh file: GLB, glTF, OBJ, PLY, STL or OFF, or one of these packed by gzip."""
     objects: Objects | None = None
     """How a mesh is cut into objects; components when not given."""
     workload: Text | None = None
@@ -178,7 +179,7 @@ def long_scene(value: object) -> object:
 def _long_file(name: str) -> dict[str, object]:
     if is_workload(name):
         return {"workload": name}
-    return {"nff" if name.lower().endswith(".nff") else "mesh": name}
+    return {"nff" if kind_of(name) == "nff" else "mesh": name}
 
 
 def _is_scene_or_text(value: object) -> bool:

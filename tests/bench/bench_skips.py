@@ -38,6 +38,7 @@ SCENES = ("mountain:5", "rings:1", "tetra:6")
 PROCESSORS = 64
 REPEATS = 5
 SWEEP = {
+    "reading": "plain",
     "picture": {"resolution": 256},
     "policy": ["object", "ray", "concurrent", "replicated"],
     "sweep": {"memory.fraction": ["1/64", "5%", "10%", "20%", "40%", "60%", "80%", 1]},

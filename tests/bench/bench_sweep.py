@@ -21,9 +21,8 @@ from simmpp.sweeps.sweep import Watcher, run_sweep
 from simmpp.sweeps.task import Task
 from simmpp.sweeps.worker import run_task
 
-CONFIG = Path(__file__).parents[2] / "configs" / "sweep.yaml"
-LARGER = ("picture.resolution=512",)
-"""The paper's picture, so that simulating takes longer than starting processes."""
+CONFIG = Path(__file__).with_name("sweep.yaml")
+"""So much that simulating takes longer than starting processes."""
 
 
 def on_the_processor(
@@ -49,7 +48,7 @@ class Adder(Watcher):
 
 def measure(path: Path, workers: int) -> tuple[float, float]:
     """Elapsed and processor seconds of a sweep."""
-    config = load_config(path, LARGER if path == CONFIG else ())
+    config = load_config(path)
     adder, began_s = Adder(), time.perf_counter()
     run_sweep(config, workers=workers, watcher=adder)
     return time.perf_counter() - began_s, adder.cpu_s

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import json
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from calls import begin_in, refused, simmpp
 from click.testing import Result
 
+from simmpp.common.errors import SimmppError
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.machine import presets
 from simmpp.policy.parameters import POLICIES
@@ -73,12 +75,12 @@ def slowest(out: str) -> str:
     return str(max(int(row["makespan_ps"]) for row in read(Path(out, "results.csv"))))
 
 
-def slow_sends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the preset's send startup 5 % longer."""
+def slow_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make a latency of the preset, which no reading has, 5 % longer."""
     preset = presets.load_preset("t3e")
-    startup_ps = preset.constants.flat()["send_startup"]
-    assert isinstance(startup_ps, int)
-    constants = preset.constants.model_copy(update={"send_startup": startup_ps * 105 // 100})
+    latency_ps = preset.constants.flat()["latency"]
+    assert isinstance(latency_ps, int)
+    constants = preset.constants.model_copy(update={"latency": latency_ps * 105 // 100})
     changed = dataclasses.replace(preset, constants=constants)
     monkeypatch.setattr(presets, "load_preset", lambda name: changed)
 
@@ -94,15 +96,18 @@ def invert_rule(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_committed_baseline_holds() -> None:
+    Path("o").mkdir()
+    Path("o/profits.png").write_bytes(b"of a check when something had moved")
     done = simmpp(*CI, str(COMMITTED / "profits.csv"), "--out", "o")
     assert done.exit_code == 0, done.output
+    assert sorted(os.listdir("o")) == ["moved.csv", "profits.csv", "results.csv", "run.json"]
     assert done.stdout == "check: 128 rows, 64 points: nothing moved\n"
     assert moved("o") == []
     assert Path("o/results.csv").read_bytes() == (COMMITTED / "results.csv").read_bytes()
 
 
-def test_slower_sends_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    slow_sends(monkeypatch)
+def test_a_slower_network_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    slow_network(monkeypatch)
     done = simmpp(*CI, str(COMMITTED), "--out", "o")
     assert done.exit_code == 1, done.output
     rows = moved("o")
@@ -110,13 +115,13 @@ def test_slower_sends_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     worst = next(r for r in rows if r["measure"] == "makespan_ps" and r["now"] == slowest("o"))
     change = int(worst["now"]) / int(worst["baseline"]) - 1
     assert worst["change"] == f"{100 * change:+.3g} %"
-    asked = simmpp(*CI, str(COMMITTED), "--out", "asked", "--set", "machine.send_startup=10.5 us")
+    asked = simmpp(*CI, str(COMMITTED), "--out", "asked", "--set", "machine.latency=2.1 us")
     assert asked.exit_code == 1
     assert moved("asked") == rows
     # what sends nothing is as it was, but for the profit over what does
     assert {r["measure"] for r in rows if r["policy"] == "replicated"} == {"time_profit"}
     assert {r["fraction"] for r in rows} == {"0.05", "0.2", "0.5"}
-    assert "send_startup_ps is 10000000 in the baseline, 10500000 now" in done.stdout
+    assert "latency_ps is 2000000 in the baseline, 2100000 now" in done.stdout
     assert done.stdout.splitlines()[0].split() == ["measure", "rows", "from", "to"]
     assert Path("o/profits.png").read_bytes().startswith(b"\x89PNG")
 
@@ -143,12 +148,13 @@ def test_a_baseline_of_ones_own() -> None:
 
 
 def test_update_says_what_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("c.yaml").write_text(CONFIG + "reading: plain\n")  # another has startups of its own
     with monkeypatch.context() as patch:
-        slow_sends(patch)
+        slow_network(patch)
         check("--update")
     done = check("--update")
     assert done.exit_code == 0
-    assert "send_startup_ps is 10500000 in the baseline, 10000000 now" in done.stdout
+    assert "latency_ps is 2100000 in the baseline, 2000000 now" in done.stdout
     assert "values of the baseline moved" in done.stdout
     assert check().exit_code == 0
 
@@ -270,6 +276,20 @@ def test_failed_points_fail_the_check_and_are_no_baseline(monkeypatch: pytest.Mo
     assert "out of memory" in done.stdout
     assert check("--update").exit_code == 1
     assert {path.name: path.read_bytes() for path in Path("b").iterdir()} == before
+
+
+@pytest.mark.parametrize("error", ["a.b failed", "1.5", "nan.", "no"])
+def test_an_error_may_hold_anything(monkeypatch: pytest.MonkeyPatch, error: str) -> None:
+    check("--update")
+
+    def simulate(*_: object, **__: object) -> None:
+        raise SimmppError(error)
+
+    monkeypatch.setattr("simmpp.methods.simulation.simulate", simulate)
+    done = check("--out", "o")
+    assert (done.exit_code, done.exception.__class__) == (1, SystemExit)
+    assert error in done.stdout
+    assert {line["now"] for line in moved("o") if line["measure"] == "error"} == {error}
 
 
 def test_tolerances_that_cannot_be() -> None:

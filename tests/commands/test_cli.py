@@ -15,10 +15,11 @@ from calls import begin_in, simmpp
 from simmpp.commands.options import window_of
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.common.units import format_ps
-from simmpp.methods.columns import COLUMNS
+from simmpp.methods.columns import result_columns
 
 CONFIG = """
 scene: tetra:2
+reading: plain
 picture: {resolution: 12}
 processors: 4
 memory: {fraction: 0.3}
@@ -68,11 +69,31 @@ def test_run_says_when_a_rule_never_fired() -> None:
     assert "concurrent: its send rule never fired" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("processors", "pixels", "told"),
+    [
+        (12, "rows", None),
+        (16, "rows", "4 of 16 PEs start without a ray: the picture has 12 rows"),
+        (144, "blocks", None),
+        (150, "interleaved", "6 of 150 PEs start without a ray: the picture has 12 x 12 pixels"),
+        (18, "{cells: 3}", "2 of 18 PEs start without a ray: the picture has 12 x 12 pixels"),
+    ],
+)
+def test_run_says_how_many_pes_have_no_pixel(
+    processors: int, pixels: str, told: str | None
+) -> None:
+    done = simmpp(
+        "run", "c.yaml", "--set", f"processors={processors}", "--set", f"placement.pixels={pixels}"
+    )
+    lines = [line for line in done.stdout.splitlines() if "start without a ray" in line]
+    assert lines == ([told] if told else [])
+
+
 def test_run_writes_rows_and_record() -> None:
     assert simmpp("run", "c.yaml", "--out", "a/b").exit_code == 0
     with open("a/b/results.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == COLUMNS
+    assert tuple(rows[0]) == result_columns()
     assert [row["policy"] for row in rows if row["scene"] == "tetra:2"] == [
         "concurrent", "object", "ray", "replicated",
     ]  # fmt: skip

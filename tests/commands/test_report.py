@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from io import StringIO
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from rich.console import Console
+from rich.progress import Progress, TextColumn
 from sweep_rows import failed, row, sweep, written
 
 from simmpp.cli import main
@@ -17,15 +20,47 @@ def run(*arguments: object) -> tuple[int, str]:
     return done.exit_code, done.output
 
 
-def test_report_writes_the_page_and_its_figures(tmp_path: Path) -> None:
+def test_report_writes_the_page_alone(tmp_path: Path) -> None:
     folder = written(tmp_path, [row(), row("ray"), failed("late")])
+    before = set(folder.iterdir())
     code, told = run("report", folder)
     assert code == 0
     assert "report.html: 3 rows, 4." in told
-    assert "figures: 4 figures, as PNG and SVG" in told
-    stems = {path.stem for path in (folder / "figures").iterdir()}
-    assert stems == {"time-profit", "message-profit", "accounts-by-policy", "messages-by-kind"}
-    assert len(list((folder / "figures").iterdir())) == 8
+    assert set(folder.iterdir()) - before == {folder / "report.html"}
+
+
+def test_report_draws_the_figures_that_are_named(tmp_path: Path) -> None:
+    folder = written(tmp_path, [row(), row("ray"), failed("late")])
+    figures = folder / "figures"
+    code, told = run("report", folder, "--figures", "time-profit", "--figures", "messages-by-kind")
+    assert code == 0
+    assert told.endswith("figures: 2 figures, as PNG and SVG\n")
+    assert {path.stem for path in figures.iterdir()} == {"time-profit", "messages-by-kind"}
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "figures/time-profit.svg" in page
+    assert "figures/message-profit.svg" not in page
+    code, told = run("report", folder, "--figures", "all")
+    assert (code, "figures: 4 figures, as PNG and SVG" in told) == (0, True)
+    stems = {"time-profit", "message-profit", "accounts-by-policy", "messages-by-kind"}
+    assert {path.stem for path in figures.iterdir()} == stems
+    assert len(list(figures.iterdir())) == 8
+
+
+def test_report_refuses_unknown_figures_before_it_writes(tmp_path: Path) -> None:
+    folder = written(tmp_path, [row(), row("ray")])
+    code, told = run("report", folder, "--figures", "speedup", "--figures", "ray")
+    there = "all, time-profit, message-profit, accounts-by-policy, messages-by-kind"
+    assert told == f"simmpp: error: --figures: values 'speedup', 'ray': expected {there}\n"
+    assert code == 2
+    assert not (folder / "report.html").exists()
+
+
+def test_drawing_has_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    screen, column = StringIO(), TextColumn("{task.description} {task.completed} of {task.total}")
+    bars = Progress(column, console=Console(file=screen, force_terminal=True))
+    monkeypatch.setattr("simmpp.commands.report.progress_bars", lambda: bars)
+    run("report", written(tmp_path, [row(), row("ray")]), "--figures", "time-profit")
+    assert "drawing 1 of 1" in screen.getvalue()
 
 
 def test_live_ends_at_once_where_no_sweep_works(tmp_path: Path) -> None:

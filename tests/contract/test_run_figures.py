@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, cast
 
 import matplotlib
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
 
 from simmpp.common.compiled import njit
+from simmpp.common.modules import PICTURES
 from simmpp.engine.arrays.records import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, SEND, SIZES
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
@@ -28,8 +30,10 @@ from simmpp.plot.matplotlib_panels import SETTINGS
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.run_figures.data import Motion, marks_of, motion_of
 from simmpp.report.run_figures.drawing import _progress
+from simmpp.report.run_figures.recorder import _draw
 from simmpp.report.run_figures.torus import draw_torus
 from simmpp.run.point import Point, PolicyRun
+from simmpp.sweeps.executors import processes
 
 many = settings(max_examples=40, deadline=None, derandomize=True)
 
@@ -251,6 +255,23 @@ MACHINE: dict[str, Any] = {
     "pack": (CopyCost(2), CopyCost(3), CopyCost(4), CopyCost(5)),
     "unpack": (CopyCost(6), CopyCost(7), CopyCost(8), CopyCost(9)),
 }  # fmt: skip
+
+
+def test_pictures_drawn_beside_are_those_drawn_here(tmp_path: Path) -> None:
+    workload = workload_of(1, [[0, 1]], object_bytes=(40, 50))
+    case = Case(workload, Machine(**MACHINE), placement_of((0, 2), [0], 4), PolicyParameters("ray"))
+    motion = seen(case)[1]
+    assert set(motion.pictures) == {"activity", "progress", "torus", "traffic", "memory", "pixels"}
+    for workers in (1, 2):
+        folder = tmp_path / str(workers)
+        folder.mkdir()
+        with processes(workers, PICTURES) as executor:
+            drawings = [executor.submit(_draw, name, motion, folder) for name in motion.pictures]
+            paths = [path for drawing in drawings for path in drawing.result()]
+        assert sorted(paths) == sorted(folder.iterdir())
+    here, beside = ({p.name: p.read_bytes() for p in (tmp_path / n).iterdir()} for n in "12")
+    assert here == beside
+    assert len(here) == 12
 
 
 def test_marks_are_the_ends_of_the_bins_where_shares_are_reached() -> None:

@@ -25,7 +25,7 @@ TABLES = ("results.csv", "results.parquet", "profits.csv", "run.json")
 PROGRAM = """
 import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background ignores it
-from simmpp.cli import main
+from simmpp.__main__ import main
 main()
 """
 CONFIG = """

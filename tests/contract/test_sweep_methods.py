@@ -20,6 +20,7 @@ from simmpp.sweeps.sweep import run_sweep
 
 CONFIG = {
     "scene": "tetra:2",
+    "reading": "plain",
     "picture": {"resolution": 12},
     "processors": 4,
     "seeds": [0, 1],

@@ -27,6 +27,7 @@ from simmpp.sweeps.worker import run_task
 TOLERANCE, MOST = Fraction(6, 100), 24
 CONFIG = {
     "scene": "tetra:3",
+    "reading": "plain",
     "picture": {"resolution": 16},
     "policy": ["ray", "concurrent"],
     "seeds": [7],

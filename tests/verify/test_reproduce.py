@@ -28,6 +28,7 @@ from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher
 
 PUBLISHED = Path(__file__).parents[2] / "experiments" / "nebel98"
+READINGS = ("plain", "mixed", "S1")
 CLAIMS = ["F2a", "F2b", "F3a", "F3b", "F3c", "F4a", "F4b", "F4c", "F4d", "F5a", "F6a", "T1", "T2"]
 
 
@@ -167,15 +168,21 @@ def test_experiments_have_eight_seeds_and_nothing_of_their_own(name: str, tmp_pa
     assert all(policy == config.reading.policy(policy.name) for policy in settings.policy)
 
 
+@pytest.mark.parametrize("reading", READINGS)
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])
-def test_published_configurations_are_the_packages(name: str) -> None:
-    assert (PUBLISHED / f"{name}.yaml").read_text(encoding="utf-8") == configuration(name)
+def test_published_configurations_are_the_packages(reading: str, name: str) -> None:
+    first, text = (PUBLISHED / reading / f"{name}.yaml").read_text("utf-8").split("\n", 1)
+    assert first.startswith("# Run with --set 'reading=") and text == configuration(name)
 
 
-def test_published_claims_follow_from_the_published_rows() -> None:
+@pytest.mark.parametrize("reading", READINGS)
+def test_published_claims_follow_from_the_published_rows(reading: str) -> None:
+    folder = PUBLISHED / reading
     names = ("figure3", "figure4", "figure6")
-    measured = (RowIndex(rows_of(PUBLISHED / f"{name}.csv")) for name in names)
-    with open(PUBLISHED / "claims.csv", encoding="utf-8", newline="") as file:
-        published = [Verdict(**row) for row in csv.DictReader(file)]
+    measured = (RowIndex(rows_of(folder / f"{name}.csv")) for name in names)
+    with open(folder / "claims.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row.pop("reading") for row in rows} == {reading}
+    published = [Verdict(**row) for row in rows]
     assert published[2:] == judge(Evidence(*measured))
     assert [each.claim for each in published] == CLAIMS

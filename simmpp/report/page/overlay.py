@@ -1,4 +1,4 @@
-"""Profit curves of a sweep over those of an earlier one, all in one picture."""
+"""Profit curves of a sweep over those of an earlier one, where they differ, in one picture."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ MOST_OVERLAID = 48
 def overlay(
     before: Sequence[Mapping[str, str]], now: Sequence[Mapping[str, str]], stem: Path
 ) -> list[Path]:
-    """Draw rows of ``profits.csv`` over earlier ones as ``stem``.png and .svg; returns these."""
+    """Draw rows of ``profits.csv`` over earlier ones as ``stem``.png and .svg; returns these.
+
+    Panels whose curves are the same are left out; if all are, there is no picture.
+    """
     old, new = numbers_of(before), numbers_of(now)
     rows = [*new, *old]
     common = [name for name in rows[0] if name in rows[-1]]
@@ -33,6 +36,14 @@ def overlay(
         for figure in figures
         for plate, of_plate in figure.plates.items()
         for panel in of_plate
-        if isinstance(panel, Panel)
+        if isinstance(panel, Panel) and _has_moved(panel)
     ]
-    return draw(panels[:MOST_OVERLAID], stem)
+    return draw(panels[:MOST_OVERLAID], stem) if panels else []
+
+
+def _has_moved(panel: Panel) -> bool:
+    before, now = (
+        {curve.label: curve.points for curve in panel.curves if curve.is_before == is_before}
+        for is_before in (True, False)
+    )
+    return before != now

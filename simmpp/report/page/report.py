@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from simmpp.common.files import write_text
+from simmpp.common.folders import is_at_work
 from simmpp.common.units import counted
 from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas
@@ -24,7 +25,6 @@ from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
-from simmpp.sweeps.journal import is_at_work
 
 PAGE = "report.html"
 LOOK_S = 1.0
@@ -58,10 +58,13 @@ def report_of(folder: Folder) -> Report:
     return Report(folder, points, {group: of for group, of in figures.items() if of})
 
 
-def write_page(report: Report, *, is_running: bool = False) -> Path:
-    """Write ``report.html``; one that is running reloads itself."""
+def write_page(report: Report, *, is_running: bool = False, stills: Collection[str] = ()) -> Path:
+    """Write ``report.html``; one that is running reloads itself.
+
+    ``stills`` are the stems of the figures' files that there will be beside it.
+    """
     path = report.folder.path / PAGE
-    write_text(rendered("report.html", _values(report, is_running)), path)
+    write_text(rendered("report.html", _values(report, is_running, stills)), path)
     return path
 
 
@@ -87,7 +90,7 @@ def _write(path: Path, *, is_running: bool) -> Folder:
     return folder
 
 
-def _values(report: Report, is_running: bool) -> dict[str, Any]:
+def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[str, Any]:
     folder, points = report.folder, report.points
     pictures = beside(folder.path)
     along = abscissas(points.axes)[0]
@@ -102,7 +105,7 @@ def _values(report: Report, is_running: bool) -> dict[str, Any]:
         "claims": folder.claims,
         "verdicts": _verdicts(folder),
         "groups": [(g.id, g.name, g.text, figures) for g, figures in report.groups.items()],
-        "files": not is_running,
+        "stills": None if is_running else stills,
         "has_points": any(points.runs),
         "beside": pictures,
         "sections": _sections(report, [(id, name) for id, name, _, _ in pictures]),

@@ -19,8 +19,11 @@ from simmpp.machine.topology import (
     next_link,
     topology_of,
 )
+from simmpp.machine.torus import Torus
 from simmpp.run.point import Point, PolicyRun
 
+OF_NETWORKS: dict[type, tuple[str, ...]] = {Torus: ("torus",)}
+"""Names of the pictures of each topology's links."""
 MARKS = (95, 99, 100)
 """Per cent of the rays."""
 
@@ -72,6 +75,14 @@ class Motion:
     """(rows, columns): links crossed for them."""
     pixel_owner: Ints
     """(rows, columns): the PE that each pixel starts on."""
+    picture: NDArray[np.uint8] | None = None
+    """(rows, columns, 3) uint8: what was rendered, if there is a scene."""
+
+    @property
+    def pictures(self) -> list[str]:
+        """Names of the pictures that there are of it."""
+        networks = OF_NETWORKS.get(type(self.topology), ())
+        return ["activity", "progress", *networks, "traffic", "memory", "pixels"]
 
     @property
     def times_ps(self) -> Ints:
@@ -93,7 +104,7 @@ class Motion:
         return np.asarray(done / max(int(done[-1]), 1), np.float64)
 
 
-def motion_of(point: Point, run: PolicyRun) -> Motion:
+def motion_of(point: Point, run: PolicyRun, picture: NDArray[np.uint8] | None = None) -> Motion:
     """The data of all pictures of a run that recorded its counters."""
     result, machine, workload = run.result, point.machine, point.workload
     counters = result.counters
@@ -131,6 +142,7 @@ def motion_of(point: Point, run: PolicyRun) -> Motion:
         pixel_cost_ps=pixel_costs(point),
         pixel_hops=pixel_hops(point, result),
         pixel_owner=point.placement.pixel_pes.astype(np.int64).reshape(workload.picture),
+        picture=picture,
     )
 
 

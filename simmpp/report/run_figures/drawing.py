@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from simmpp.common.units import format_ps
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.machine.torus import Torus
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
 from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
@@ -25,35 +24,17 @@ ACTIVITIES = {"compute_ps": BLUE, "communication_ps": ORANGE, "waiting_ps": "#ED
 """Colours of Okabe and Ito (2008); waiting is light: both stand out from it in print too."""
 AMOUNTS = "cividis"
 """Colours of amounts: made for the colour-blind (Nunez et al. 2018), and monotonous in grey."""
-Drawing = Callable[[Figure, Motion], None]
-NETWORKS: dict[type, dict[str, Drawing]] = {Torus: {"torus": draw_torus}}
-"""What is drawn of the links of each topology."""
 MS = 1e-9
 """Picoseconds to milliseconds."""
 
 
-def draw_motion(
-    motion: Motion, folder: Path, picture: NDArray[np.uint8] | None = None
-) -> list[Path]:
-    """Write all pictures of a run into a folder, as <policy>-<what>.png and .svg; returns these.
-
-    ``picture`` (rows, columns, 3) uint8 is what was rendered, if there is a scene.
-    """
-    figures: dict[str, Drawing] = {
-        "activity": _activity,
-        "progress": _progress,
-        **NETWORKS.get(type(motion.topology), {}),
-        "traffic": _traffic,
-        "memory": _memory,
-        "pixels": lambda figure, motion: _pixels(figure, motion, picture),
-    }
-    written, title = [], re.sub(r"[^\w.+-]+", "-", motion.title)
-    for name, draw in figures.items():
-        with matplotlib.rc_context(SETTINGS):
-            figure = Figure(layout="constrained")
-            draw(figure, motion)
-            written += save(figure, folder / f"{title}-{name}")
-    return written
+def draw_picture(name: str, motion: Motion, folder: Path) -> list[Path]:
+    """Write one picture of a run into a folder, as <policy>-<name>.png and .svg; returns these."""
+    title = re.sub(r"[^\w.+-]+", "-", motion.title)
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(layout="constrained")
+        DRAWINGS[name](figure, motion)
+        return save(figure, folder / f"{title}-{name}")
 
 
 def _activity(figure: Figure, motion: Motion) -> None:
@@ -189,8 +170,9 @@ def _memory(figure: Figure, motion: Motion) -> None:
     axes.legend(frameon=False, ncols=2, fontsize=8)
 
 
-def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -> None:
+def _pixels(figure: Figure, motion: Motion) -> None:
     """What pixels cost, how far their rays and objects went, and whose they are."""
+    picture = motion.picture
     figure.set_size_inches(10 if picture is None else 13, 3.4)
     axes = list(figure.subplots(1, 3 if picture is None else 4))
     if picture is not None:
@@ -208,3 +190,14 @@ def _pixels(figure: Figure, motion: Motion, picture: NDArray[np.uint8] | None) -
         here.set_title(f"{motion.title}: {title}" if here is axes[0] else title)
         here.set_axis_off()
         figure.colorbar(image, ax=here, shrink=0.85)
+
+
+DRAWINGS: dict[str, Callable[[Figure, Motion], None]] = {
+    "activity": _activity,
+    "progress": _progress,
+    "torus": draw_torus,
+    "traffic": _traffic,
+    "memory": _memory,
+    "pixels": _pixels,
+}
+"""Each picture by its name, those of networks included."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Protocol
 
+from simmpp.common.files import naming, replaced
 from simmpp.engine.record.log import Sink
 from simmpp.machine.machine import Machine
 from simmpp.policy.parameters import PolicyParameters
@@ -33,7 +35,11 @@ class TimelineRecorder:
     needs_counters = False
 
     def __init__(self, path: Path, machine: Machine, window: Window | None = None) -> None:
-        self._file = _file(path)
+        self._path = path
+        self._problem: OSError | None = None
+        with ExitStack() as stack:
+            self._file = _file(path.name.lower(), stack.enter_context(replaced(path)))
+            self._closing = stack.pop_all()
         self._machine = machine
         self._window = window or Window()
         self._timeline: Timeline | None = None
@@ -43,23 +49,35 @@ class TimelineRecorder:
         self._file.begin(policy.title, self._machine.processors)
         timeline = Timeline(self._machine.processors, self._machine.probe_ps, self._window)
         self._timeline = timeline
-        return lambda rows: self._file.add(timeline.add(rows))
+        return lambda rows: self._add(timeline.add(rows))
 
     def end(self, run: PolicyRun) -> None:
         """The run that was begun last is over."""
         if self._timeline is not None:
-            self._file.add(self._timeline.end(run.result.makespan_ps))
+            self._add(self._timeline.end(run.result.makespan_ps))
+
+    def _add(self, part: TimelinePart) -> None:
+        try:
+            with naming(self._path):
+                self._file.add(part)
+        except OSError as error:
+            self._problem = error
+            raise
 
     def close(self) -> None:
-        """End the file; what was simulated until now can be read."""
-        self._file.close()
+        """End the file; what was simulated until now can be read, unless the disk was full."""
+        with self._closing:
+            if self._problem is not None:
+                raise self._problem
+            self._file.close()
 
 
-def _file(path: Path) -> TimelineFile:
-    if path.name.lower().endswith(".parquet"):
+def _file(name: str, path: Path) -> TimelineFile:
+    """What writes to ``path`` in the format of ``name``."""
+    if name.endswith(".parquet"):
         from simmpp.report.timeline.table import TimelineTable
 
         return TimelineTable(path)
     from simmpp.report.timeline.trace_events import TraceEvents
 
-    return TraceEvents(path)
+    return TraceEvents(path, is_zipped=name.endswith(".gz"))

@@ -42,7 +42,8 @@ class TimelineTable:
     """A Parquet file that grows part by part."""
 
     def __init__(self, path: Path) -> None:
-        self._writer = parquet.ParquetWriter(path, SCHEMA, compression="zstd")
+        self._file = path.open("wb")
+        self._writer = parquet.ParquetWriter(self._file, SCHEMA, compression="zstd")
         self._policies: list[str] = []
 
     def begin(self, title: str, processors: int) -> None:
@@ -58,6 +59,7 @@ class TimelineTable:
     def close(self) -> None:
         """End the file, which Parquet needs to be readable."""
         self._writer.close()
+        self._file.close()
 
     def _table(self, rows: Rows) -> pa.Table:
         no_load = rows["load"] == NONE

@@ -41,12 +41,12 @@ Texts = Any
 
 
 class TraceEvents:
-    """A file of trace events, written as they come; ``.gz`` is compressed."""
+    """A file of trace events, written as they come."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, is_zipped: bool) -> None:
         self._file = path.open("wb")
         self._zipped: gzip.GzipFile | None = None
-        if path.name.lower().endswith(".gz"):  # without a date: equal runs give equal bytes
+        if is_zipped:  # without a date: equal runs give equal bytes
             self._zipped = gzip.GzipFile("", "wb", _COMPRESSION, self._file, mtime=0)
         self._process = 0
         self._arrows = 0

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE, Vector
 from simmpp.scene.spd.transform import (
     IDENTITY,
@@ -30,12 +30,12 @@ def objects(size: int) -> int:
 def nff(size: int) -> str:
     """NFF text of the sphereflake of ``size`` + 1 generations."""
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view((2.1, 1.3, 1.7), (0, 0, 0), (0, 0, 1), hither=0.01),
-        *map(nff_text.light, ((4, 3, 2), (1, -4, 4), (-3, 1, 5))),
-        nff_text.material((1, 0.75, 0.33), 0.8, ior=1),
-        nff_text.polygon(((12, 12, -0.5), (-12, 12, -0.5), (-12, -12, -0.5), (12, -12, -0.5))),
-        nff_text.material((1, 0.9, 0.7), 0.5, 0.5, 3.0827, ior=1),
+        SPD.background(SKY_BLUE),
+        SPD.view((2.1, 1.3, 1.7), (0, 0, 0), (0, 0, 1), hither=0.01),
+        *map(SPD.light, ((4, 3, 2), (1, -4, 4), (-3, 1, 5))),
+        SPD.material((1, 0.75, 0.33), 0.8, ior=1),
+        SPD.polygon(((12, 12, -0.5), (-12, 12, -0.5), (-12, -12, -0.5), (12, -12, -0.5))),
+        SPD.material((1, 0.9, 0.7), 0.5, 0.5, 3.0827, ior=1),
     ]
     _flake(size, (0.0, 0.0, 0.0), 0.5, (0.0, 0.0, 1.0), _nine_directions(), parts)
     return "".join(parts)
@@ -69,7 +69,7 @@ def _flake(
     nine: list[Vector],
     parts: list[str],
 ) -> None:
-    parts.append(nff_text.sphere(centre, radius))
+    parts.append(SPD.sphere(centre, radius))
     if depth == 0:
         return
     turn = _from_z_to(direction)

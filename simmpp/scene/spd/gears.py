@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from itertools import product
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE, Vector
 
 TEETH = 36
@@ -29,11 +29,11 @@ def objects(size: int) -> int:
 def nff(size: int) -> str:
     """NFF text of size x size x size gears."""
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view((-1.1, -2.1, 2.6), (0, 0, 0), (0, 0, 1)),
-        *map(nff_text.light, LIGHTS),
-        nff_text.material((1, 0.85, 0.7), 0.3, 0.6, 3.0827),
-        nff_text.polygon(((2, 2, 0), (-2, 2, 0), (-2, -2, 0), (2, -2, 0))),
+        SPD.background(SKY_BLUE),
+        SPD.view((-1.1, -2.1, 2.6), (0, 0, 0), (0, 0, 1)),
+        *map(SPD.light, LIGHTS),
+        SPD.material((1, 0.85, 0.7), 0.3, 0.6, 3.0827),
+        SPD.polygon(((2, 2, 0), (-2, 2, 0), (-2, -2, 0), (2, -2, 0))),
     ]
     for iz, iy, ix in product(range(size), repeat=3):
         parts.append(_material(ix, iy, iz))
@@ -51,8 +51,8 @@ def _material(ix: int, iy: int, iz: int) -> str:
     largest = max(raw)
     colour = [c / largest for c in raw]
     if (4 * ix + 2 * iy + iz) % 5 == 0:
-        return nff_text.material(colour, 0.2, 0, 100000, 0.8, 1.1)
-    return nff_text.material(colour, 1)
+        return SPD.material(colour, 0.2, 0, 100000, 0.8, 1.1)
+    return SPD.material(colour, 1)
 
 
 def _gear(size: int, ix: int, iy: int, iz: int) -> list[str]:
@@ -74,7 +74,7 @@ def _gear(size: int, ix: int, iy: int, iz: int) -> list[str]:
 
     top = outline(1, z)
     sides = [
-        nff_text.polygon((v, (v[0], v[1], floor), (w[0], w[1], floor), w))
+        SPD.polygon((v, (v[0], v[1], floor), (w[0], w[1], floor), w))
         for v, w in zip(top, top[1:] + top[:1], strict=True)
     ]
-    return [nff_text.polygon(top), *sides, nff_text.polygon(outline(-1, floor))]
+    return [SPD.polygon(top), *sides, SPD.polygon(outline(-1, floor))]

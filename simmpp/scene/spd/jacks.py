@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import Vector
 from simmpp.scene.spd.transform import (
     Matrix,
@@ -34,10 +34,10 @@ def objects(size: int) -> int:
 def nff(size: int) -> str:
     """NFF text of ``size`` levels of jacks."""
     parts = [
-        nff_text.background((0.2, 0.05, 0.2)),
-        nff_text.view((0, 0, -8), (0, 0, 0), (0, 1, 0), 25, 0.001, (256, 256)),
-        nff_text.light((-10, 3, -20)),
-        nff_text.material((0.737, 0.561, 0.561), 0.7, 0.7, 11.1434, ior=1),
+        SPD.background((0.2, 0.05, 0.2)),
+        SPD.view((0, 0, -8), (0, 0, 0), (0, 1, 0), 25, 0.001, (256, 256)),
+        SPD.light((-10, 3, -20)),
+        SPD.material((0.737, 0.561, 0.561), 0.7, 0.7, 11.1434, ior=1),
     ]
     frame = product(rotation_y(math.radians(-20)), rotation_x(math.radians(-30)))
     _jacks(frame, 1.0, size, parts)
@@ -58,6 +58,6 @@ def _jack(frame: Matrix, scale: float) -> list[str]:
     tails = [transform((-x, -y, -z), frame) for x, y, z in AXES]
     radius = CYLINDER_RADIUS * scale
     return [
-        *(nff_text.cone(a, radius, b, radius) for a, b in zip(tails, tips, strict=True)),
-        *(nff_text.sphere(tip, SPHERE_RADIUS * scale) for tip in tips + tails),
+        *(SPD.cone(a, radius, b, radius) for a, b in zip(tails, tips, strict=True)),
+        *(SPD.sphere(tip, SPHERE_RADIUS * scale) for tip in tips + tails),
     ]

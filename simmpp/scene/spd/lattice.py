@@ -8,13 +8,12 @@ from __future__ import annotations
 import math
 from itertools import product
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE
 
-SPHERE = nff_text.material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827)
+SPHERE = SPD.material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827)
 CYLINDERS = tuple(
-    nff_text.material(colour, 0.99)
-    for colour in ((0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.1, 0.1, 0.9))
+    SPD.material(colour, 0.99) for colour in ((0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.1, 0.1, 0.9))
 )
 LIGHTS = (
     (2, 0.5, 0.5),
@@ -36,11 +35,9 @@ def nff(size: int) -> str:
     n = size
     x0 = (n // 2 + 0.5) / n
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view(
-            (x0, 1, 1 - 1 / (2 * n)), (x0, -1, -1 - 1 / (2 * n)), (0.2, 1, 0), 60, hither=0
-        ),
-        *map(nff_text.light, LIGHTS),
+        SPD.background(SKY_BLUE),
+        SPD.view((x0, 1, 1 - 1 / (2 * n)), (x0, -1, -1 - 1 / (2 * n)), (0.2, 1, 0), 60, hither=0),
+        *map(SPD.light, LIGHTS),
     ]
     for cell in product(range(n + 1), range(n + 1), range(n + 1)):
         parts.extend(_grid_point(n, cell))
@@ -53,11 +50,11 @@ def _grid_point(n: int, cell: tuple[int, int, int]) -> list[str]:
     # Cylinders end just inside the spheres, whatever the SPD's radii.
     pulled = 0.99 * radius * (1 - math.sqrt(1 / 4))
     centre = tuple(c / n for c in cell)
-    lines = [SPHERE, nff_text.sphere(centre, radius)]
+    lines = [SPHERE, SPD.sphere(centre, radius)]
     for axis in range(3):
         if cell[axis] < n:
             near, far = list(centre), list(centre)
             near[axis] += pulled
             far[axis] += 1 / n - pulled
-            lines += [CYLINDERS[axis], nff_text.cone(near, tube, far, tube)]
+            lines += [CYLINDERS[axis], SPD.cone(near, tube, far, tube)]
     return lines

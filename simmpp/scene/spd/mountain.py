@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE, Vector
 from simmpp.scene.spd.transform import product, rotation_about, rotation_z, transform
 
@@ -28,12 +28,12 @@ def objects(size: int) -> int:
 def nff(size: int) -> str:
     """NFF text of the mountain of 2**size x 2**size cells; sizes 1 to 7 are nested."""
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view((-1.6, 1.6, 1.7), (0, 0, 0), (0, 0, 1), hither=0.01),
-        nff_text.light((-100, -100, 100)),
-        nff_text.material((1, 1, 1), 0.1, 0.1, 101.148, 0.9, 1.5),
-        *(nff_text.sphere(centre, BALL_RADIUS) for centre in _ball_centres()),
-        nff_text.material((0.5, 0.45, 0.35), 1),
+        SPD.background(SKY_BLUE),
+        SPD.view((-1.6, 1.6, 1.7), (0, 0, 0), (0, 0, 1), hither=0.01),
+        SPD.light((-100, -100, 100)),
+        SPD.material((1, 1, 1), 0.1, 0.1, 101.148, 0.9, 1.5),
+        *(SPD.sphere(centre, BALL_RADIUS) for centre in _ball_centres()),
+        SPD.material((0.5, 0.45, 0.35), 1),
     ]
     _Terrain(size, parts).build()
     return "".join(parts)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE, Vector
 from simmpp.scene.spd.transform import rotation_x, rotation_z, transform
 
@@ -27,11 +27,11 @@ def nff(size: int) -> str:
     """NFF text of ``size`` layers of rings."""
     d = DISTANCE
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view((-1, -d, 0.5), (-1, -d + 1, 0.5), (0, 0, 1)),
-        *map(nff_text.light, ((3, -d, 3), (-4, -d, 1), (2, -d, -4))),
-        nff_text.material((1, 1, 1), 1),
-        nff_text.polygon(_wall(size)),
+        SPD.background(SKY_BLUE),
+        SPD.view((-1, -d, 0.5), (-1, -d + 1, 0.5), (0, 0, 1)),
+        *map(SPD.light, ((3, -d, 3), (-4, -d, 1), (2, -d, -4))),
+        SPD.material((1, 1, 1), 1),
+        SPD.polygon(_wall(size)),
     ]
     pentagons = _pentagons()
     for layer in range(size):
@@ -67,8 +67,8 @@ def _pentagons() -> list[list[Vector]]:
 
 def _object(centre: Vector, pentagons: list[list[Vector]], parts: list[str]) -> None:
     for colour, pentagon in zip(COLOURS, pentagons, strict=True):
-        parts.append(nff_text.material(colour, 0.5, 0.2, 3.0827))
+        parts.append(SPD.material(colour, 0.5, 0.2, 3.0827))
         points = [(x + centre[0], y + centre[1], z + centre[2]) for x, y, z in pentagon]
         for i, point in enumerate(points):
-            parts.append(nff_text.cone(point, TUBE_RADIUS, points[i - 1], TUBE_RADIUS))
-            parts.append(nff_text.sphere(point, TUBE_RADIUS))
+            parts.append(SPD.cone(point, TUBE_RADIUS, points[i - 1], TUBE_RADIUS))
+            parts.append(SPD.sphere(point, TUBE_RADIUS))

@@ -5,7 +5,7 @@ Source: Haines 1987; SPD 3.x ``tetra.c``.
 
 from __future__ import annotations
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE, Vector
 
 CORNERS = ((-1, -1, 1), (-1, 1, -1), (1, -1, -1), (1, 1, 1))
@@ -22,10 +22,10 @@ def nff(size: int) -> str:
     eye = (1.022846, -3.177154, -2.174512)
     at = (-0.004103, -0.004103, 0.216539)
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view(eye, at, (-0.816497, -0.816497, 0.816497)),
-        nff_text.light((2, -18, -5)),
-        nff_text.material((1, 0.2, 0.2), 1),
+        SPD.background(SKY_BLUE),
+        SPD.view(eye, at, (-0.816497, -0.816497, 0.816497)),
+        SPD.light((2, -18, -5)),
+        SPD.material((1, 0.2, 0.2), 1),
     ]
     _tetrahedra((0.0, 0.0, 0.0), 1.0, size, parts)
     return "".join(parts)
@@ -40,5 +40,5 @@ def _tetrahedra(centre: Vector, half_width: float, depth: int, parts: list[str])
         for corner in corners:
             _tetrahedra(corner, reach, depth - 1, parts)
         return
-    lines = [nff_text.numbers(*corner) + "\n" for corner in corners]
+    lines = [SPD.numbers(*corner) + "\n" for corner in corners]
     parts.extend(f"p 3\n{lines[a]}{lines[b]}{lines[c]}" for a, b, c in FACES)

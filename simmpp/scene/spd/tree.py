@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from simmpp.scene import nff_text
+from simmpp.scene.nff_text import SPD
 from simmpp.scene.scene import SKY_BLUE
 from simmpp.scene.spd.transform import (
     IDENTITY,
@@ -43,12 +43,12 @@ def objects(size: int) -> int:
 def nff(size: int) -> str:
     """NFF text of the tree of ``size`` + 1 generations of branches."""
     parts = [
-        nff_text.background(SKY_BLUE),
-        nff_text.view((4.5, 0.4, 2), (0, 0, 1.5), (0, 0, 1)),
-        *map(nff_text.light, LIGHTS),
-        nff_text.material((0.2, 0.7, 0.2), 1),
-        nff_text.polygon(((50, 50, 0), (-50, 50, 0), (-50, -50, 0), (50, -50, 0))),
-        nff_text.material((0.55, 0.4, 0.2), 1),
+        SPD.background(SKY_BLUE),
+        SPD.view((4.5, 0.4, 2), (0, 0, 1.5), (0, 0, 1)),
+        *map(SPD.light, LIGHTS),
+        SPD.material((0.2, 0.7, 0.2), 1),
+        SPD.polygon(((50, 50, 0), (-50, 50, 0), (-50, -50, 0), (50, -50, 0))),
+        SPD.material((0.55, 0.4, 0.2), 1),
     ]
     _branch(IDENTITY, 1.0, size, [_child(*branch) for branch in BRANCHES], parts)
     return "".join(parts)
@@ -67,8 +67,8 @@ def _branch(
     base, tip = transform((0, 0, 0), frame), transform((0, 0, 1), frame)
     radius = scale * BRANCH_RADIUS
     tip_radius = radius * TAPER
-    parts.append(nff_text.cone(base, radius, tip, tip_radius))
-    parts.append(nff_text.sphere(tip, tip_radius))
+    parts.append(SPD.cone(base, radius, tip, tip_radius))
+    parts.append(SPD.sphere(tip, tip_radius))
     if depth > 0:
         for child in children:
             _branch(product(child, frame), scale * TAPER, depth - 1, children, parts)

@@ -11,12 +11,13 @@ from pathlib import Path
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
+from simmpp.common.folders import BENCH as BENCH_FOLDER
+from simmpp.common.folders import claimed
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
 from simmpp.methods.columns import PLACE
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.plot.matplotlib_panels import draw
 from simmpp.policy.parameters import DEFAULT_POLICY, REFERENCE
 from simmpp.run.provenance import result_versions
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
@@ -56,8 +57,10 @@ def bench(
     refuse_unfit(config)
     plans = {method: plan_of(_tried(config, method, seeds)) for method in METHODS}
     full = plans[SIMULATE]
-    out.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(out, {"versions": result_versions()})) as journal:
+    with (
+        claimed(out, BENCH_FOLDER),
+        closing(Journal(out, {"versions": result_versions()})) as journal,
+    ):
         _time_tracing(full, journal, watcher or Watcher())
         run_plans(plans.values(), journal, workers, watcher)
         return _written(plans, journal, out)
@@ -77,6 +80,9 @@ def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
     write_csv(rows, bench_columns(keys), out / BENCH)
     ladder, files = rungs(rows, keys), [out / BENCH]
     if ladder:
+        # Not at the top: pages, which read these tables, need no matplotlib.
+        from simmpp.plot.matplotlib_panels import draw
+
         seeds = len(full.config.settings.seeds)
         files += draw(bench_panels(ladder, NAMES, seeds), out / Path(BENCH).stem)
     return Bench(ladder, files, [row["error"] for row in runs if row["error"]])

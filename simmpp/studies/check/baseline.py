@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.files import read_csv, replaced
+from simmpp.common.files import copy, read_csv
 from simmpp.config.config import Config, config_from_mapping, described, with_key
 from simmpp.config.defaults import READING
 from simmpp.methods.columns import COLUMNS
@@ -168,8 +168,7 @@ def write_baseline(obtained: Path, folder: Path) -> None:
     """
     folder.mkdir(parents=True, exist_ok=True)
     for name in (RESULTS, PROFITS):
-        with replaced(folder / name) as part:
-            part.write_bytes((obtained / name).read_bytes())
+        copy(obtained / name, folder / name)
     record = read_record(obtained / RECORD)
     record[DIGESTS] = {name: _digest(obtained / name) for name in (PROFITS, RESULTS)}
     write_record(record, folder / RECORD)

@@ -19,7 +19,6 @@ from simmpp.studies.nebel98.figure2_data import (
     rows_of,
     winner_maps,
 )
-from simmpp.studies.nebel98.figure2_plot import draw_figure2
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, Verdict
 from simmpp.workload.workload import Workload
 
@@ -57,6 +56,9 @@ def write_figure2(
     ratios: Sequence[tuple[str, float]] = DEFAULT_RATIOS,
 ) -> list[Path]:
     """Write ``figure2.csv`` and the maps for several cost ratios; returns the paths of these."""
+    # Not at the top: pages, which show the other figures, need no matplotlib.
+    from simmpp.studies.nebel98.figure2_plot import draw_figure2
+
     write_csv(rows, list(rows[0]), out / "figure2.csv")
     return draw_figure2(winner_maps(config, workload, ratios), heading, out)
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
+from simmpp.common.files import replaced
 from simmpp.model.analytical import Makespans
 from simmpp.model.border import winners
 from simmpp.plot.matplotlib_panels import DOTS_PER_INCH
@@ -45,8 +46,10 @@ def draw_figure2(panels: Sequence[WinnerMap], heading: str, folder: Path) -> lis
     paths = [folder / "figure2.png", folder / "figure2.svg"]
     with matplotlib.rc_context({"svg.hashsalt": "simmpp", "svg.fonttype": "none"}):
         # Not plot's save: it draws the SVG with the PNG's layout, which would be other bytes.
-        figure.savefig(paths[0], dpi=DOTS_PER_INCH)
-        figure.savefig(paths[1], dpi=DOTS_PER_INCH, metadata={"Date": None})
+        with replaced(paths[0]) as part:
+            figure.savefig(part, format="png", dpi=DOTS_PER_INCH)
+        with replaced(paths[1]) as part:
+            figure.savefig(part, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None})
     return paths
 
 

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv, write_text
+from simmpp.common.folders import REPRODUCTION, claimed
 from simmpp.config.config import Config, load_config
 from simmpp.config.defaults import READING
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.plot.curves import Panel
-from simmpp.plot.matplotlib_panels import draw
 from simmpp.run.inputs import workload_of
 from simmpp.run.provenance import all_versions, result_versions
 from simmpp.run.record import write_record
@@ -81,18 +81,19 @@ def reproduce(
         for name, own in overrides.items()
     }
     folders = {name: out / name if len(plans) > 1 else out for name in plans}
-    for folder in folders.values():
-        folder.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(out, {"versions": result_versions()})) as journal:
-        run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
-        done = [
-            _report(name, plans[name], journal, own, folders[name])
-            for name, own in overrides.items()
-        ]
-    for one in done:
-        _write_claims([one], folders[one.reading], with_reading=bool(readings))
-    if len(done) > 1:
-        _write_claims(done, out, with_reading=True)
+    with claimed(out, REPRODUCTION):
+        for folder in folders.values():
+            folder.mkdir(exist_ok=True)
+        with closing(Journal(out, {"versions": result_versions()})) as journal:
+            run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
+            done = [
+                _report(name, plans[name], journal, own, folders[name])
+                for name, own in overrides.items()
+            ]
+        for one in done:
+            _write_claims([one], folders[one.reading], with_reading=bool(readings))
+        if len(done) > 1:
+            _write_claims(done, out, with_reading=True)
     return done
 
 
@@ -124,6 +125,9 @@ def _report(
     reading: str, plans: Mapping[str, Plan], journal: Journal, overrides: Sequence[str], out: Path
 ) -> Reproduction:
     """Write configurations, rows, figures and the record of one reading."""
+    # Not at the top: pages, which show the same figures, need no matplotlib.
+    from simmpp.plot.matplotlib_panels import draw
+
     for name in (MODEL, *plans):
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
     rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}

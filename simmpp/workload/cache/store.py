@@ -7,14 +7,13 @@ aligns it; the rest stands as JSON in the schema's metadata.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import os
-import tempfile
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import cache_folder
-from simmpp.common.errors import WorkloadError
+from simmpp.common.errors import CacheWarning, WorkloadError
+from simmpp.common.files import replaced
 from simmpp.scene.check import check_scene
 from simmpp.scene.scene import Scene
 from simmpp.workload.check import check
@@ -51,7 +51,7 @@ def workload_for(
     that can't be written, which costs only the next run's time.
     """
     check_scene(scene)
-    tell = notice or (lambda text: warnings.warn(text, stacklevel=3))
+    tell = notice or (lambda text: warnings.warn(text, CacheWarning, stacklevel=3))
     digest = digest_of(scene, picture)
     path = cached_path(digest)
     if path.exists():
@@ -84,17 +84,13 @@ def save(workload: Workload, path: str | os.PathLike[str]) -> None:
     header["checksum"] = _checksum(header, arrays)
     row = pa.RecordBatch.from_arrays(list(map(_cell, arrays.values())), list(arrays))
     schema = row.schema.with_metadata({HEADER: json.dumps(header)})
-    target = Path(path)
     # Workers may write the same workload at once: each its own file, and the last one stays.
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file, pa.ipc.new_file(file, schema) as writer:
-            writer.write_batch(row.replace_schema_metadata(schema.metadata))
-        os.replace(temporary, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
+    with (
+        replaced(Path(path)) as part,
+        open(part, "wb") as file,
+        pa.ipc.new_file(file, schema) as writer,
+    ):
+        writer.write_batch(row.replace_schema_metadata(schema.metadata))
 
 
 def cached_path(digest: str) -> Path:
@@ -109,8 +105,9 @@ def load(path: str | os.PathLike[str]) -> Workload:
     itself.
     """
     try:
-        with pa.memory_map(os.fspath(path)) as file:
-            row = pa.ipc.open_file(file).get_batch(0)  # keeps the pages when the file is shut
+        with open(path, "rb") as file:  # pyarrow itself opens names in UTF-8 only
+            pages = mmap(file.fileno(), 0, access=ACCESS_READ)
+        row = pa.ipc.open_file(pa.py_buffer(pages)).get_batch(0)  # keeps the pages
         row.validate(full=True)  # no array reaches beyond the file
         header = json.loads(row.schema.metadata[HEADER])
         shapes, checksum = header["shapes"], header.pop("checksum")

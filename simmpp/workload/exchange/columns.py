@@ -14,6 +14,8 @@ from simmpp.common.errors import WorkloadError
 from simmpp.scene.nff_words import LARGEST
 
 WORKLOAD_SUFFIXES = (".parquet", ".npz")
+RAY_COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
+OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
 ITINERARY = ("itinerary_offsets", "itinerary_objects")
 """The two columns of rays that hold one itinerary per row, as CSR."""
 Column = NDArray[Any]
@@ -55,7 +57,7 @@ class CheckedTable:
         """Fail for a column that has no meaning, and for one that is missing."""
         for name in self.columns:
             if name not in names:
-                near = get_close_matches(name, names, n=1)
+                near = get_close_matches(name.lower(), names, n=1)
                 hint = f"did you mean {self.prefix}{near[0]}?" if near else ""
                 expected = f"expected one of {', '.join(self.prefix + n for n in names)}"
                 self.fail(name, f"it is unknown: {hint or expected}")

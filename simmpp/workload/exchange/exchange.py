@@ -16,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import WorkloadError
+from simmpp.common.files import in_utf8, refuse_special
 from simmpp.common.units import LONGEST_PS
 from simmpp.common.validate import require_kind
 from simmpp.workload.check import check
 from simmpp.workload.exchange import npz
 from simmpp.workload.exchange.columns import (
     MOST_ROWS,
+    OBJECT_COLUMNS,
     WORKLOAD_SUFFIXES,
     CheckedTable,
     Column,
@@ -31,7 +33,6 @@ from simmpp.workload.exchange.columns import (
 from simmpp.workload.exchange.rays import rays_of
 from simmpp.workload.workload import MESH, OBJECT_KINDS, RAY_KINDS, Workload, frozen
 
-OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
 MOST_OBJECT_BYTES = 2**40
 """A TiB for one object; the sum of all stays far from the end of int64."""
 UNREADABLE = (
@@ -57,7 +58,7 @@ def import_workload(path: str | os.PathLike[str]) -> Workload:
         digest.update(f"{name} {arrays[name].shape}".encode())
         digest.update(np.ascontiguousarray(arrays[name]).data)
     workload = frozen(
-        Workload(name=path.stem, digest=digest.hexdigest(), picture=picture, **arrays)
+        Workload(name=in_utf8(path.stem), digest=digest.hexdigest(), picture=picture, **arrays)
     )
     check(workload, str(path))
     return workload
@@ -110,9 +111,10 @@ def _format(path: Path) -> Any:
 
 def _read(path: Path) -> Content:
     tables = _format(path)
-    if not path.is_file():
+    if not path.exists():
         raise WorkloadError("there is no such file", where=str(path))
     try:
+        refuse_special(path)
         read: Content = tables.read(path)
     except UNREADABLE as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
@@ -139,9 +141,9 @@ def _objects_of(table: CheckedTable) -> dict[str, NDArray[Any]]:
 
 
 def _picture(tables: Content, n_primaries: int) -> tuple[int, int]:
-    """Rows and columns of primary rays."""
+    """Rows and columns of primary rays; a list of rays is a picture that is one ray wide."""
     if tables.picture is None:
-        return 1, n_primaries
+        return n_primaries, 1
     sides = tables.picture
     whole = sides.dtype.kind in "iu" and sides.shape == (2,) and (sides > 0).all()
     rows, columns = (int(side) for side in sides) if whole else (0, 0)

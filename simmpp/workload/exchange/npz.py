@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.exchange.columns import ITINERARY, MOST_ROWS, CheckedTable, Column, Content
+from simmpp.common.files import replaced
+from simmpp.workload.exchange.columns import (
+    ITINERARY,
+    MOST_ROWS,
+    OBJECT_COLUMNS,
+    RAY_COLUMNS,
+    CheckedTable,
+    Column,
+    Content,
+)
 
 RAY_PREFIX, OBJECT_PREFIX, PICTURE = "ray_", "object_", "picture"
 """Beginnings of the names of arrays, and the one array that is of no table."""
@@ -27,15 +37,19 @@ def read(path: Path) -> Content:
             raise WorkloadError(problem, where=where)
     picture = arrays.pop(PICTURE, None)
     itineraries = {name: arrays.pop(name) for name in ITINERARY if name in arrays}
+    for name in arrays:
+        if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
+            problem = f"array {name[:40]!r}: it is unknown{_hint(name)}"
+            raise WorkloadError(problem, where=where)
     if len(itineraries) < 2:
         raise WorkloadError(f"expected the arrays {' and '.join(ITINERARY)}", where=where)
     n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
     rays = _table(where, RAY_PREFIX, arrays, n_rays)
     rays.columns.update(itineraries)
-    objects = _table(where, OBJECT_PREFIX, arrays, len(arrays.get("object_bytes", ())))
-    for name in arrays:
-        if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
-            raise WorkloadError(f"array {name[:40]!r}: it is unknown", where=where)
+    # As many as any column has: whether the one that has to be there is called so is seen later.
+    lengths = {n: len(array) for n, array in arrays.items() if n.startswith(OBJECT_PREFIX)}
+    n_objects = lengths.get("object_bytes", max(lengths.values(), default=0))
+    objects = _table(where, OBJECT_PREFIX, arrays, n_objects)
     return Content(rays, objects, picture)
 
 
@@ -47,8 +61,16 @@ def write(tables: Content, path: Path) -> None:
         named |= {prefix + name: column for name, column in columns.items()}
     if tables.picture is not None:
         named[PICTURE] = tables.picture
-    with open(path, "wb") as file:
+    with replaced(path) as part, open(part, "wb") as file:
         np.savez(file, allow_pickle=False, **named)
+
+
+def _hint(name: str) -> str:
+    """What it may have been meant for."""
+    known = [PICTURE, *ITINERARY, *(RAY_PREFIX + n for n in RAY_COLUMNS[1:])]
+    known += [OBJECT_PREFIX + column for column in OBJECT_COLUMNS]
+    near = get_close_matches(name.lower(), known, n=1)
+    return f": did you mean {near[0]}?" if near else ""
 
 
 def _table(where: str, prefix: str, arrays: dict[str, Column], rows: int) -> CheckedTable:

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.exchange.columns import ITINERARY, CheckedTable
+from simmpp.workload.exchange.columns import ITINERARY, RAY_COLUMNS, CheckedTable
 from simmpp.workload.exchange.numbering import by_generation, first_repeat, regrouped, row_in_cycle
 from simmpp.workload.workload import PRIMARY, RAY_KINDS, REFLECTED, SHADOW
-
-RAY_COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
 
 Ints = NDArray[np.int64]
 

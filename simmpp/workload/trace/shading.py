@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from simmpp.common.compiled import kernel, njit
+from simmpp.common.files import replaced
 from simmpp.scene.scene import Scene, Vector
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import ray_of
@@ -57,7 +59,8 @@ def render(scene: Scene, picture: Picture, workload: Workload) -> NDArray[np.uin
 
 def save_png(image: NDArray[np.uint8], path: str | os.PathLike[str]) -> None:
     """Write a picture (rows, columns, 3) uint8 as PNG, whatever the name ends in."""
-    Image.fromarray(image).save(path, format="PNG")
+    with replaced(Path(path)) as part:
+        Image.fromarray(image).save(part, format="PNG")
 
 
 def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:

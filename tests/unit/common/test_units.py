@@ -48,6 +48,44 @@ def test_bandwidths() -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
+        ("10 Gbit/s", 1_250_000_000),
+        ("10Gb/s", 1_250_000_000),
+        ("10 GB/s", 10_000_000_000),
+        ("8 kbit/s", 1000),
+        ("1 Gibit/s", 2**27),
+        ("1 bit/us", 125_000),
+        ("100003 b/s", 12_500),  # 12500.375
+        ("100004 b/s", 12_501),  # halves go up
+    ],
+)
+def test_bits_are_eighths_of_bytes(text: str, expected: int) -> None:
+    assert units.bytes_per_second(text) == expected
+
+
+@given(number=st.integers(1, 10**6), prefix=st.sampled_from(["k", "M", "G", "Ki", "Mi", "Gi"]))
+def test_a_bandwidth_in_bits_is_that_in_bytes_eight_times(number: int, prefix: str) -> None:
+    as_bytes = units.bytes_per_second(f"{number} {prefix}B/s")
+    for bit in ("bit", "b"):
+        assert units.bytes_per_second(f"{8 * number} {prefix}{bit}/s") == as_bytes
+
+
+@pytest.mark.parametrize("text", ["7 kbit/s", "0 Mbit/s", "10 Gbit", "10 bit s", "1e30 Gbit/s"])
+def test_wrong_rates_of_bits(text: str) -> None:
+    with pytest.raises(
+        ConfigError, match=r"expected a bandwidth such as '340 MB/s' or '10 Gbit/s'"
+    ):
+        units.bytes_per_second(text)
+
+
+@pytest.mark.parametrize("text", ["64 Mbit", "64 Mb", "8 b", "1 bit"])
+def test_a_size_has_no_bits(text: str) -> None:
+    with pytest.raises(ConfigError, match="expected a size such as '64 MB'"):
+        units.byte_count(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
         ("12%", Fraction(12, 100)),
         (0.1, Fraction(1, 10)),
         (1e-6, Fraction(1, 10**6)),
@@ -92,7 +130,7 @@ def test_wrong_times_say_what_was_expected(value: object) -> None:
         units.picoseconds(value)
 
 
-@pytest.mark.parametrize("value", [0, "0 MB/s", "999 B/s", "fast", "-1 B/s", "5 MB", "8 Mb/s"])
+@pytest.mark.parametrize("value", [0, "0 MB/s", "999 B/s", "fast", "-1 B/s", "5 MB", "8 mb/s"])
 def test_wrong_bandwidths(value: object) -> None:
     with pytest.raises(ConfigError, match="expected a bandwidth"):
         units.bytes_per_second(value)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import config_from_mapping, load_config
-from simmpp.config.settings import Settings
+from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.placement.placement import Cells, Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.picture import Picture
@@ -27,11 +27,13 @@ def load(text: str, *overrides: str):  # type: ignore[no-untyped-def]
 
 def test_everything_but_the_scene_has_a_default() -> None:
     config = load("scene: {spd: mountain, size: 5}\n")
+    assert config.settings.reading == DEFAULT_READING
     assert config.scene_spec == {"spd": "mountain", "size": 5}
     assert config.picture == Picture()
-    assert config.memory == Memory()
-    assert config.settings.placement == PlacementRules()
-    assert config.settings.policy == (PolicyParameters("concurrent"),)
+    assert config.memory == Memory(transient="x")
+    assert config.settings.placement == PlacementRules(pixels="rows")
+    concurrent = PolicyParameters("concurrent", ask_at_least=64, packing="all")
+    assert config.settings.policy == (concurrent,)
     assert config.machine_for(64).name == "t3e"
     settings = config.settings
     assert (settings.processors, settings.seeds, settings.tolerance) == (64, (0,), None)
@@ -41,6 +43,7 @@ def test_everything_but_the_scene_has_a_default() -> None:
 def test_everything_can_be_said() -> None:
     config = load("""
 scene: {mesh: bunny.glb, objects: {clusters: 64}}
+reading: plain
 picture: {resolution: 9, samples: corners, max_depth: 3, shadows: false, refraction: false}
 machine: {preset: t3d, shape: [8, 1, 1], test: 1 us, pack: {rays: {bandwidth: unlimited}}}
 processors: 8
@@ -50,7 +53,7 @@ ready_order: breadth-first
 policy:
   - object
   - {name: concurrent, label: eager, min_load: 100, batch: 1, ask_at_least: 2,
-     load_info: {refresh: 5 ms}, merge_requests: false}
+     load_info: {refresh: 5 ms}, merge_requests: false, packing: requests}
 seeds: [3, 1]
 tolerance: 2%
 max_seeds: 9
@@ -63,7 +66,9 @@ sweep: {processors: [8], memory.bytes: [1 MB, 2 MB], policy: [object, [ray, conc
     assert config.settings.placement == PlacementRules("morton", Cells(8))
     assert config.machine_for(8).test.cone_ps == 1_000_000
     assert config.settings.policy[1] == PolicyParameters(
-        "concurrent", "eager", 100, 1, 2, "piggyback", 5 * 10**9, merge_requests=False
+        *("concurrent", "eager", 100, 1, 2, "piggyback", 5 * 10**9),
+        merge_requests=False,
+        packing="requests",
     )
     assert config.settings.tolerance == Fraction(1, 50)
 

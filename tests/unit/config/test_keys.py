@@ -13,7 +13,9 @@ from click.testing import CliRunner
 from simmpp.cli import main
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import config_from_mapping, described
-from simmpp.config.keys import find_keys, key_table, keys, listed_keys, with_table
+from simmpp.config.keys import default_of, find_keys, key_table, keys, listed_keys, with_table
+from simmpp.config.reading import load_reading
+from simmpp.config.settings import DEFAULT_READING
 from simmpp.machine.constants import OTHERS, key_of
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
@@ -39,7 +41,9 @@ def test_the_readme_has_the_present_table() -> None:
 @pytest.mark.parametrize("constant", SCALARS)
 def test_a_constant_of_the_machine_is_told_of_everywhere(constant: str) -> None:
     key = keys()[f"machine.{constant}"]
-    default = f"{load_preset(DEFAULT_PRESET).texts[constant]} ({DEFAULT_PRESET})"
+    default = default_of(key.name, key.expect, None, load_reading(DEFAULT_READING))
+    plain = default_of(key.name, key.expect, None, load_reading("plain"))
+    assert plain == f"{load_preset(DEFAULT_PRESET).texts[constant]} ({DEFAULT_PRESET})"
     assert key.expect.unit and key.expect.schema and key.expect.takes and key.default == default
     assert len(key.meaning) > 8 and key.meaning.endswith(".")
     assert f"| `{key.name}` |" in README.read_text(encoding="utf-8")

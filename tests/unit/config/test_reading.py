@@ -26,7 +26,9 @@ from simmpp.sweeps.grid import comparisons
 from simmpp.sweeps.plan import plan_of
 
 SCENE = "tetra:2"
-OWN = Path(__file__).parents[3] / "experiments" / "nebel98" / "readings"
+ROOT = Path(__file__).parents[3]
+OWN = ROOT / "experiments" / "nebel98" / "readings"
+CONFIGS = ROOT / "configs"
 FILES = sorted(path for path in OWN.glob("*.yaml"))
 
 
@@ -95,6 +97,15 @@ def test_a_configuration_without_a_reading_has_the_default_one() -> None:
     named, unnamed = of(DEFAULT_READING), config_from_mapping({"scene": SCENE})
     assert named.settings == unnamed.settings
     assert named.machine_for(64) == unnamed.machine_for(64)
+
+
+def test_the_configuration_that_writes_all_defaults_out_has_them() -> None:
+    written = load_config(CONFIGS / "nebel.yaml")
+    left = config_from_mapping({"scene": "mountain:5", "policy": ["object", "ray", "concurrent"]})
+    assert written.settings.placement == left.settings.placement
+    assert (written.memory, written.settings.policy) == (left.memory, left.settings.policy)
+    assert written.machine_for(64) == left.machine_for(64)
+    assert written.lines_of_reading == []
 
 
 # --- code < preset < reading < configuration < --set ---
@@ -409,7 +420,7 @@ def test_defaults_of_a_reading_are_told() -> None:
     assert default("placement.owners", "bisection") == "bisection"
     assert default("policy.ask_at_least", 32) == "32, 64 for concurrent (reading mixed)"
     assert default("policy.packing", "none") == "none, all for concurrent (reading mixed)"
-    assert default("machine.ray") == "0.5 us (t3e) (reading mixed)"
+    assert default("machine.ray") == "0.5 us (t3e, reading mixed)"
     assert default("machine.send_startup") == "10 us (t3e)"
     assert default("machine.latency") == "2 us (t3e)"
     assert default("memory.bytes") == "none"

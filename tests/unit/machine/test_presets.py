@@ -35,7 +35,7 @@ def test_every_preset_makes_a_machine_and_cites_each_constant(name: str) -> None
     assert len(made.sources) == 33
 
 
-def test_t3e_has_the_constants_of_the_exploration() -> None:
+def test_t3e_has_the_constants_that_its_file_says() -> None:
     t3e = machine("t3e")
     assert (t3e.send_startup_ps, t3e.receive_startup_ps) == (10_000_000, 20_000_000)
     assert t3e.pack == t3e.unpack == (CopyCost(0, 256_000_000),) * 4

@@ -165,6 +165,23 @@ def test_whole_cells_differ_by_one_between_pes(
     assert counts.max() - counts.min() in (0, side * side)
 
 
+@pytest.mark.parametrize("residents", RESIDENTS)
+@pytest.mark.parametrize("rule", ["blocks", "interleaved", "random", Cells(3), "rows"])
+@given(case=st.integers(0, 200), processors=st.integers(1, 9))
+def test_rays_below_one_another_are_placed_as_those_in_a_row_but_for_rows(
+    rule: Any, residents: Any, case: int, processors: int
+) -> None:
+    listed = random_case(case).workload
+    one_wide = replace(listed, picture=(listed.n_primaries, 1))
+    in_a_row = replace(listed, picture=(1, listed.n_primaries))
+    memory, rules = Memory(Fraction(1, 3), residents=residents), PlacementRules(pixels=rule)
+    ours = place(one_wide, processors, memory, rules, 0)
+    turns = PlacementRules(pixels="interleaved")
+    theirs = place(in_a_row, processors, memory, turns if rule == "rows" else rules, 0)
+    assert np.array_equal(ours.pixel_pes, theirs.pixel_pes)
+    assert np.array_equal(ours.replica_objects, theirs.replica_objects)
+
+
 def test_pixels_worked_by_hand() -> None:
     assert pixel_pes("blocks", (2, 4), 3, 0).tolist() == [0, 0, 1, 1, 1, 2, 2, 2]
     assert pixel_pes("interleaved", (1, 5), 2, 0).tolist() == [0, 1, 0, 1, 0]

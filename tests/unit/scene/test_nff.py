@@ -219,15 +219,103 @@ def test_any_text_is_a_scene_or_a_scene_error(text: str) -> None:
         assert write_nff(scene)
 
 
-@given(st.lists(st.floats(1e-3, 1e3), min_size=4, max_size=4))
-def test_numbers_are_kept_to_six_digits(values: list[float]) -> None:
-    x, y, z, radius = values
-    sphere = only(f"s {x!r} {y!r} {z!r} {radius!r}")
-    assert isinstance(sphere, Sphere) and sphere.centre == (x, y, z)
+REALS = st.floats(-1e30, 1e30)
+POSITIVE = st.floats(1e-300, 1e30)
+SHARES = st.floats(0, 1e30)
+POINTS = st.tuples(REALS, REALS, REALS)
+COLOURS = st.tuples(SHARES, SHARES, SHARES)
+INDICES = st.integers(0, 2)
+MATERIALS = st.builds(
+    Material, COLOURS, SHARES, SHARES, SHARES, st.floats(0, 1), st.floats(1e-300, 1e30)
+)
+
+
+def rows(points: st.SearchStrategy[tuple[float, ...]]) -> st.SearchStrategy[np.ndarray]:
+    return st.lists(points, min_size=3, max_size=6).map(lambda found: np.array(found, np.float64))
+
+
+def part(vertices: np.ndarray, faces: list[tuple[int, int, int]], material: int) -> MeshPart:
+    return MeshPart(vertices, np.array(faces, dtype=np.int32), material, "part")
+
+
+SIDES = st.tuples(REALS, st.floats(-1e30, -1) | st.floats(1, 1e30), REALS)
+PATCHES = rows(st.tuples(REALS, REALS, REALS, REALS, st.floats(1, 9), REALS)).flatmap(
+    lambda found: st.builds(Polygon, st.just(found[:, :3]), st.just(found[:, 3:]), INDICES)
+)
+OBJECTS = st.one_of(
+    st.builds(Sphere, POINTS, POSITIVE, INDICES),
+    st.builds(Cone, POINTS, POSITIVE, POINTS, SHARES, INDICES).filter(lambda c: c.base != c.apex),
+    st.builds(Polygon, rows(POINTS), st.none(), INDICES),
+    PATCHES,
+    st.builds(part, rows(POINTS), st.lists(st.tuples(*[INDICES] * 3), min_size=1), INDICES),
+)
+CAMERAS = st.builds(
+    Camera,
+    POINTS,
+    POINTS,
+    st.tuples(st.just(0.0), st.just(0.0), st.just(1.0)),
+    st.floats(0.1, 179),
+    SHARES,
+    st.tuples(st.integers(1, 65536), st.integers(1, 65536)),
+).filter(lambda c: abs(c.eye[0] - c.at[0]) > 1e-3 * abs(c.eye[2] - c.at[2]) > 0)
+SCENES = st.builds(
+    Scene,
+    st.just("any"),
+    st.lists(OBJECTS).map(tuple),
+    st.tuples(*[MATERIALS] * 3),
+    st.lists(st.builds(Light, POINTS, COLOURS)).map(tuple),
+    CAMERAS,
+    COLOURS,
+)
+
+
+def geometry(scene: Scene) -> list[tuple[object, ...]]:
+    """Objects with all their numbers and their surface; meshes triangle by triangle."""
+    found: list[tuple[object, ...]] = []
+    for obj in scene.objects:
+        material = scene.materials[obj.material]
+        if isinstance(obj, MeshPart):
+            found += [
+                ("polygon", corners, None, material) for corners in obj.vertices[obj.faces].tolist()
+            ]
+        elif isinstance(obj, Polygon):
+            normals = None if obj.normals is None else obj.normals.tolist()
+            found.append(("polygon", obj.vertices.tolist(), normals, material))
+        elif isinstance(obj, Sphere):
+            found.append(("sphere", obj.centre, obj.radius, material))
+        else:
+            found.append(("cone", obj.base, obj.base_radius, obj.apex, obj.apex_radius, material))
+    return found
+
+
+@settings(deadline=None)
+@given(SCENES)
+def test_any_scene_reads_back_as_it_was(scene: Scene) -> None:
+    again = read(write_nff(scene))
+    assert geometry(again) == geometry(scene)
+    assert (again.camera, again.lights) == (scene.camera, scene.lights)
+    assert again.background == scene.background
+
+
+def test_numbers_have_no_more_digits_than_they_need() -> None:
+    text = VIEW + "s 0.1 100000.25 1e-07 123456789\nl 1 -2 0.333\n"
+    written = write_nff(read(text)).splitlines()
+    assert written[-1] == "s 0.1 100000.25 1e-07 123456789" and "l 1 -2 0.333" in written
+
+
+@pytest.mark.parametrize("number", [1.5e30, float("inf"), float("nan")])
+def test_what_nff_does_not_hold_is_not_written(number: float) -> None:
+    sphere = Sphere((0, number, 0), 1)
     scene = Scene("s", (sphere,), (Material(),), (), Camera((0, 0, 5), (0, 0, 0), (0, 1, 0)))
-    (again,) = read(write_nff(scene)).objects
-    assert isinstance(again, Sphere)
-    np.testing.assert_allclose((*again.centre, again.radius), values, rtol=5.1e-6)
+    with pytest.raises(SceneError) as caught:
+        write_nff(scene)
+    assert str(caught.value) == f"the scene has the number {number:g}, NFF's are at most 1e+30"
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-160, 1.0, 1e29])
+def test_a_view_may_be_of_any_size(size: float) -> None:
+    camera = Camera((0, 0, size), (0, 0, 0), (0, size, 0))
+    assert read(write_nff(Scene("s", (), (), (), camera))).camera == camera
 
 
 def test_a_scene_may_be_empty() -> None:

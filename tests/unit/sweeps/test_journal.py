@@ -94,11 +94,3 @@ def test_a_damaged_line_is_named(tmp_path: Path, line: bytes) -> None:
     (tmp_path / FILE).write_bytes(b"\n".join(lines) + b"\n")
     with pytest.raises(ConfigError, match=rf"{FILE}:3: damaged"):
         Journal(tmp_path, IDENTITY)
-
-
-def test_two_sweeps_in_one_folder_are_refused(tmp_path: Path) -> None:
-    journal = Journal(tmp_path, IDENTITY)
-    with pytest.raises(ConfigError, match="another sweep is at work here"):
-        Journal(tmp_path, IDENTITY)
-    journal.close()
-    Journal(tmp_path, IDENTITY)

@@ -1,5 +1,6 @@
 """What a user may call a scene."""
 
+import gzip
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -19,6 +20,8 @@ QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "own.nff").write_text(nff("mountain", 1))
     (tmp_path / "quad.obj").write_text(QUAD)
+    (tmp_path / "own.nff.gz").write_bytes(gzip.compress(nff("mountain", 1).encode()))
+    (tmp_path / "quad.obj.gz").write_bytes(gzip.compress(QUAD.encode()))
     (tmp_path / "tetra").mkdir()
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -35,6 +38,9 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("quad.obj", "quad.obj:components", 1),
         ("quad.obj:nodes", "quad.obj:nodes", 1),
         ("quad.obj:1", "quad.obj:1", 2),
+        ("own.nff.gz", "own", 12),
+        ("quad.obj.gz", "quad.obj.gz:components", 1),
+        ("quad.obj.gz:1", "quad.obj.gz:1", 2),
         (Path("own.nff"), "own", 12),
         ({"spd": "mountain", "size": 2}, "mountain:2", 36),
         ({"spd": "jacks"}, "jacks:1", 9),

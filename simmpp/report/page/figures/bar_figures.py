@@ -55,7 +55,7 @@ def _figure(
             for panel, numbered in panels.items()
         }
         sums = [sum(heights.values()) for bars in drawn.values() for heights in bars.values()]
-        y = Scale(label, limits=(0, max(sums, default=1) * BAR_HEADROOM))
+        y = Scale(label, limits=(0, (max(sums, default=0) or 1) * BAR_HEADROOM))
         bars_of[plate] = []
         for panel in sorted(panels, key=lambda panel: styles.get(panel, 0)):
             numbers = list(drawn[panel])

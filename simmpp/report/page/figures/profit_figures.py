@@ -113,7 +113,7 @@ def _scale(label: str, curves: Iterable[Curve]) -> Scale:
     low, high = min(spread.low for spread in spreads), max(spread.high for spread in spreads)
     if low > 0 and words.is_log(spread.mean for spread in spreads):
         return Scale(label, is_log=True, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
-    return Scale(label, limits=(min(low, 0.0), high * HEADROOM))
+    return Scale(label, limits=(min(low, 0.0), (high or 1.0) * HEADROOM))
 
 
 Placed = tuple[int, float, Row]

@@ -14,7 +14,7 @@ from simmpp.report.page.folder import read_folder
 from simmpp.run.rows import in_order
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS
 
-NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
+NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98" / "plain"
 
 
 def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:

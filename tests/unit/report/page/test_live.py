@@ -5,21 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from filelock import FileLock
 from sweep_rows import sweep, written
 
+from simmpp.common.folders import held
 from simmpp.report.page import report as live
 from simmpp.sweeps import sweep as running
 from simmpp.sweeps import sweep as showing
-from simmpp.sweeps.journal import LOCK, Journal, Outcome, is_at_work
-
-
-def test_a_folder_is_at_work_as_long_as_its_journal_is_held(tmp_path: Path) -> None:
-    assert not is_at_work(tmp_path)
-    journal = Journal(tmp_path, {})
-    assert is_at_work(tmp_path)
-    journal.close()
-    assert not is_at_work(tmp_path)
+from simmpp.sweeps.journal import Outcome
 
 
 def test_the_page_is_written_again_until_the_sweep_is_done(
@@ -28,7 +20,7 @@ def test_the_page_is_written_again_until_the_sweep_is_done(
     monkeypatch.setattr(live, "LOOK_S", 0.01)
     rows = sweep(fraction=[0.1, 0.5, 1.0])
     page = tmp_path / "report.html"
-    with FileLock(tmp_path / LOCK):
+    with held(tmp_path):
         pages = live.follow(written(tmp_path, rows[:12]))
         assert len(next(pages).rows) == 12
         assert "running: 12 of 12 rows done" in page.read_text(encoding="utf-8")

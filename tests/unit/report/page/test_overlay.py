@@ -34,3 +34,17 @@ def test_points_that_all_failed_leave_the_baseline(tmp_path: Path) -> None:
     ]
     _, svg = overlay(before, now, tmp_path / "profits")
     assert "concurrent dataflow" in svg.read_text(encoding="utf-8")
+
+
+def test_only_what_moved_is_drawn(tmp_path: Path) -> None:
+    before = cells(scene=["tetra:3", "rings:1"], fraction=[0.1, 0.5, 0.8])
+    now = [dict(row) for row in before]
+    assert overlay(before, now, tmp_path / "profits") == []
+    assert list(tmp_path.iterdir()) == []
+    moved = next(r for r in now if r["scene"] == "rings:1" and r["policy"] == "ray")
+    moved["time_profit"] = f"{float(moved['time_profit']) * 1.01}"
+    _, svg = overlay(before, now, tmp_path / "profits")
+    text = svg.read_text(encoding="utf-8")
+    assert "Time profit: rings:1" in text
+    assert "Message profit" not in text
+    assert "tetra:3" not in text

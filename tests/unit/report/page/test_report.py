@@ -17,7 +17,6 @@ from simmpp.plot.plotly_panels import script
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.paper import paper_figures
-from simmpp.report.page.figures.stills import write_stills
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
@@ -25,7 +24,7 @@ from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows
 
-NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98"
+NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98" / "plain"
 HOSTILE = '</script><script>document.title="broken"</script>" \' & {{ 7 * 7 }} <!--'
 
 
@@ -58,7 +57,7 @@ class Page(HTMLParser):
         return json.loads(next(s for s in self.scripts if s.startswith('{"figures"')))
 
 
-def page_of(folder: Path, **options: bool) -> Page:
+def page_of(folder: Path, **options: Any) -> Page:
     return Page(write_page(report_of(read_folder(folder)), **options))
 
 
@@ -195,12 +194,15 @@ def test_pictures_of_runs_are_in_the_page_and_those_of_reports_are_not(tmp_path:
     assert (sensitivity.name, sensitivity.tables[0].rows) == ("Sensitivity", [["latency", "0"]])
 
 
-def test_figures_are_files_with_the_same_bytes_each_time(tmp_path: Path) -> None:
-    points = report_of(Folder(tmp_path, sweep(scene=["a", "b"], fraction=[0.1, 1.0])))
-    once = [path for pair in write_stills(points.figures[:1], tmp_path / "1") for path in pair]
-    again = [path for pair in write_stills(points.figures[:1], tmp_path / "2") for path in pair]
-    assert [path.name for path in once] == ["time-profit.png", "time-profit.svg"]
-    assert [path.read_bytes() for path in once] == [path.read_bytes() for path in again]
+def test_only_stills_that_are_drawn_are_linked(tmp_path: Path) -> None:
+    folder = written(tmp_path, sweep(fraction=[0.1, 0.5, 1.0], processors=[8, 64]))
+    page = page_of(folder, stills=["speedup"])
+    links = [attrs["href"] for tag, attrs in page.tags if tag == "a"]
+    stills = [link for link in links if link and link.startswith("figures/")]
+    assert stills == ["figures/speedup.svg", "figures/speedup.png"]
+    assert "As a file: simmpp report --figures efficiency" in page.text
+    assert "simmpp report --figures speedup" not in page.text
+    assert "As a file" not in page_of(folder, is_running=True).text
 
 
 def test_a_bench_is_a_figure(tmp_path: Path) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import shutil
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
 import pytest
 from builders import random_case, workload_of
@@ -79,11 +82,17 @@ def same(a: Workload, b: Workload, *, but: tuple[str, ...] = ()) -> bool:
     return a.picture == b.picture
 
 
+def without_picture(workload: Workload) -> Workload:
+    """The same rays as a list, which is a picture of one column."""
+    return dataclasses.replace(workload, picture=(workload.n_primaries, 1))
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_renderers_tables(tmp_path: Path, suffix: str) -> None:
     workload = import_workload(write(tmp_path / f"forest{suffix}", RAYS, OBJECTS))
     assert workload.name == "forest"
-    assert same(workload, SMALL, but=("object_centroids", "hits", "hit_distances"))
+    expected = without_picture(SMALL)
+    assert same(workload, expected, but=("object_centroids", "hits", "hit_distances"))
     assert workload.hits.tolist() == [-1, 0, 2, -1, -1]  # known of those that spawned others
     assert workload.object_centroids.tolist() == [[0, 0.5, 3], [1, 0.5, 2], [2, 0.5, 1]]
 
@@ -92,7 +101,7 @@ def test_a_renderers_tables(tmp_path: Path, suffix: str) -> None:
 def test_defaults(tmp_path: Path, suffix: str) -> None:
     rays = {"itinerary": [[0], [1, 0]]}
     workload = import_workload(write(tmp_path / f"a{suffix}", rays, {"bytes": [7, 8]}))
-    assert workload.picture == (1, 2)
+    assert workload.picture == (2, 1)
     assert workload.object_kinds.tolist() == [MESH, MESH]
     assert workload.object_triangles.tolist() == [0, 0]
     assert not workload.object_centroids.any()
@@ -163,7 +172,8 @@ def test_the_order_of_rows_does_not_matter(tmp_path: Path, seed: int) -> None:
         "kind": workload.object_kinds,
         "triangles": workload.object_triangles,
     }
-    assert same(import_workload(write(tmp_path / "a.npz", rays, objects)), workload)
+    imported = import_workload(write(tmp_path / "a.npz", rays, objects))
+    assert same(imported, without_picture(workload))
 
 
 def _depths(workload: Workload) -> list[int]:
@@ -369,3 +379,103 @@ def sound_or_refused(path: Path) -> None:
         assert "\n" not in str(error)
     else:
         check(workload, "")
+
+
+FLAT = {"itinerary": [[0], [1, 2], [], [2]]}
+"""All rays are primary."""
+
+
+@pytest.mark.parametrize(
+    "parent",
+    [
+        pa.nulls(4),
+        pa.nulls(4, pa.int16()),
+        pa.nulls(4, pa.float64()),
+        pa.array([None, -1, None, -1]),
+        pa.array([np.nan] * 4),
+        pa.array([-1.0, None, np.nan, None]),
+    ],
+)
+def test_whatever_says_that_there_is_no_parent(tmp_path: Path, parent: pa.Array) -> None:
+    plain = import_workload(write(tmp_path / "plain.parquet", FLAT, OBJECTS))
+    columns = FLAT | {"parent": parent, "hit": pa.nulls(4)}
+    assert same(import_workload(write(tmp_path / "a.parquet", columns, OBJECTS)), plain)
+
+
+def test_pandas_makes_floats_of_integers_with_nulls(tmp_path: Path) -> None:
+    plain = import_workload(write(tmp_path / "plain.parquet", RAYS, OBJECTS))
+    frame = pd.DataFrame(RAYS | {"parent": [None, 0, 3, 0, None]})
+    assert frame["parent"].dtype == np.float64
+    pd.DataFrame(OBJECTS).to_parquet(tmp_path / "a.objects.parquet")
+    for index in (frame.index, [5, 3, 2, 8, 9], list("abcde")):  # a range is kept as metadata only
+        frame.set_index(pd.Index(index)).to_parquet(tmp_path / "a.parquet")
+        assert same(import_workload(tmp_path / "a.parquet"), plain)
+    for wrong in (0.5, np.inf, 1e12):
+        frame["parent"] = [None, 0, 3, wrong, None]
+        frame.to_parquet(tmp_path / "a.parquet")
+        with pytest.raises(WorkloadError, match=r"column parent, row 3: value .*: it holds double"):
+            import_workload(tmp_path / "a.parquet")
+
+
+@given(cuts=st.lists(st.integers(0, 5), max_size=4), seed=st.integers(0, 5))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=20)
+def test_parts_in_a_folder_are_one_table(tmp_path: Path, cuts: list[int], seed: int) -> None:
+    """Wherever a table is cut, also into parts of no rows or of primary rays alone."""
+    whole = import_workload(write(tmp_path / "whole.parquet", RAYS, OBJECTS))
+    rays = pa.table(RAYS | {"parent": pa.array([None, 0, 3, 0, None])})
+    for name, table in (("cut.parquet", rays), ("cut.objects.parquet", pa.table(OBJECTS))):
+        folder = tmp_path / name
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        (folder / "_SUCCESS").touch()
+        (folder / ".part-0.parquet.crc").touch()
+        ends = [0, *sorted(min(cut, len(table)) for cut in cuts), len(table)]
+        for number, (low, high) in enumerate(pairwise(ends)):
+            part = pa.table(table[low:high].to_pydict(), table.schema if high == low else None)
+            parquet.write_table(part, folder / f"part-{number}.parquet")
+    assert same(import_workload(tmp_path / "cut.parquet"), whole)
+
+
+def test_parts_that_do_not_fit_together(tmp_path: Path) -> None:
+    def refused() -> str:
+        with pytest.raises(WorkloadError) as caught:
+            import_workload(tmp_path / "a.parquet")
+        return str(caught.value).removeprefix(f"{tmp_path}/")
+
+    pd.DataFrame(OBJECTS).to_parquet(tmp_path / "a.objects.parquet")
+    folder = tmp_path / "a.parquet"
+    folder.mkdir()
+    assert refused() == "a.parquet: expected files *.parquet in this folder"
+    pd.DataFrame(FLAT).to_parquet(folder / "0.parquet")
+    pd.DataFrame(FLAT | {"pixel": [0] * 4}).to_parquet(folder / "1.parquet")
+    problem = "column pixel: only one of this file and 0.parquet has it"
+    assert refused() == f"a.parquet/1.parquet: {problem}"
+    pd.DataFrame({"itinerary": ["a"]}).to_parquet(folder / "1.parquet")
+    assert refused().startswith("a.parquet: can't be read: ")
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [("bytes", "byte"), ("parent", "Parent"), ("x", "X"), ("itinerary", "itineraries")],
+)
+def test_a_misspelt_column_is_named(tmp_path: Path, suffix: str, right: str, wrong: str) -> None:
+    tables = [dict(RAYS), dict(OBJECTS)]
+    path = write(tmp_path / f"a{suffix}", *tables)
+    for table in tables:
+        if right in table:
+            table[wrong] = table.pop(right)
+    if suffix == ".npz":
+        with np.load(path) as file:
+            arrays = dict(file)
+        names = (f"ray_{right}", f"object_{right}", f"{right}_offsets")
+        (name,) = (name for name in arrays if name in names)
+        arrays[name.replace(right, wrong)] = arrays.pop(name)
+        np.savez(path, **arrays)
+        right, wrong = name, name.replace(right, wrong)
+    else:
+        path = write(path, *tables)
+    with pytest.raises(WorkloadError) as caught:
+        import_workload(path)
+    problem = caught.value.problem.replace("'", "").replace("array ", "column ")
+    assert problem == f"column {wrong}: it is unknown: did you mean {right}?"
