@@ -81,7 +81,9 @@ def test_no_command_writes_over_what_another_has_written(
     assert content(folder) == before
 
 
-@pytest.mark.parametrize("command", [*INTO_A_FOLDER, ("report",)], ids=lambda command: command[0])
+@pytest.mark.parametrize(
+    "command", [*INTO_A_FOLDER, ("report", "--figures", "all")], ids=lambda command: command[0]
+)
 def test_two_at_once_are_refused(command: tuple[str, ...]) -> None:
     if command[0] == "check":
         assert simmpp(*command[:-1], "--update").exit_code == 0
@@ -146,8 +148,10 @@ def files_of_at_most(size_bytes: int) -> Iterator[None]:
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
 def test_a_full_disk_is_told_with_the_file_and_leaves_no_part(
-    command: tuple[str, ...], file: str
+    command: tuple[str, ...], file: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    # figures are drawn right here: other processes would not have this one's limit
+    monkeypatch.setattr("simmpp.commands.options.available_cores", lambda: 1)
     simmpp("workload", "c.yaml")  # into the cache: of that another test speaks
     simmpp("scene", "tetra:2", "--preview", "p.png")
     written(Path("r"), [row(), row("ray")])

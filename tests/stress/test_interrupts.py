@@ -36,7 +36,7 @@ processors: 8
 COMMANDS = {
     "run": "run c.yaml --out o",
     "workload": "workload c.yaml",
-    "scene": "scene mountain:7 --preview p.png",
+    "scene": "scene rings:14 --preview p.png",
     "sweep of 1": "sweep c.yaml --workers 1 --out o",
     "sweep of 2": "sweep c.yaml --workers 2 --out o",
     "model": "model c.yaml --out o",

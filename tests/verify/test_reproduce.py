@@ -9,6 +9,7 @@ import pytest
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
+from simmpp.common.folders import MARK
 from simmpp.config.config import load_config
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.studies.nebel98.claims import judge
@@ -22,7 +23,7 @@ from simmpp.studies.nebel98.reproduce import (
     reproduce,
 )
 from simmpp.studies.nebel98.verdict import Verdict
-from simmpp.sweeps.journal import Outcome
+from simmpp.sweeps.journal import FILE, Outcome
 from simmpp.sweeps.profits import profit_rows
 from simmpp.sweeps.ratios import RowIndex
 from simmpp.sweeps.sweep import Watcher
@@ -135,7 +136,7 @@ def test_each_reading_has_its_folder_and_its_claims(
     for name in (DEFAULT_READING, "same"):
         folder = out / name
         written = {path.name for path in folder.iterdir()}
-        assert written == {file for file in of_default if not file.startswith("points")}
+        assert written == set(of_default) - {FILE, MARK}
         own = (folder / "claims.csv").read_text().splitlines()
         assert own == [claims[0], *(ln for ln in claims[1:] if ln.startswith(f"{name},"))]
         for figure in (*EXPERIMENTS, MODEL):
