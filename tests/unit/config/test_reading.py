@@ -387,6 +387,14 @@ def test_what_is_no_name_is_refused(value: object) -> None:
         ("policy: {object: {packing: {value: all, source: s}}}", "policy.object.packing: value "),
         ("policy: {object: {label: LEAF}}", "policy.object.label: expected none: readings do"),
         ("policy: {object: {name: LEAF}}", "policy.object.name: expected none: readings do"),
+        (
+            "policy: {object: {value: {label: v}, source: s}}",
+            "policy.object: expected none: readings",
+        ),
+        (
+            "machine: {t3e: {value: {shape: v}, source: s}}",
+            "machine.t3e: expected none: readings do",
+        ),
         ("placement: LEAF", "placement: value 'v': expected a mapping (key: value)"),
         ("memory: LEAF", "memory: value 'v': expected a mapping (key: value)"),
         ("policy: LEAF", "policy: value 'v': expected a mapping (key: value)"),
