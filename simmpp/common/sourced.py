@@ -27,11 +27,13 @@ def values_of(
     Raises ConfigError, with its place, for what is neither such a leaf nor a mapping of them.
     """
     match node:
-        case {"value": value, "source": str(source), **others} if source.strip() and not others:
+        case {"value": value, "source": str(source), **others} if (
+            path and source.strip() and not others
+        ):
             key = ".".join(map(str, path))
             cited.texts[key], cited.sources[key] = str(value), " ".join(source.split())
             return value
-        case dict() if "value" not in node:
+        case dict() if "value" not in node or not path:  # the whole is no leaf
             return {
                 key: values_of(child, cited, places, (*path, key)) for key, child in node.items()
             }

@@ -31,7 +31,12 @@ def lines_used(data: Mapping[str, Any], settings: Settings, reading: Reading) ->
         own = machine.flat()
         left = (costs.written(key) for key in costs.constants.flat() if key not in own)
         used |= dict.fromkeys(f"{MACHINE}.{machine.preset}.{key}" for key in left)
-    return [line for line in reading.lines if line.key in used]
+    return [line for line in reading.lines if any(_meet(line.key, key) for key in used)]
+
+
+def _meet(one: str, other: str) -> bool:
+    """Whether two keys are the same, or one is within the other: a value may be a mapping."""
+    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
 def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], dict[str, None]]:

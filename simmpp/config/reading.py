@@ -121,7 +121,7 @@ def _reading(name: str, text: str, where: str) -> Reading:
     description, parts, places = _parts(parse_yaml(text, where))
     cited = Cited()
     values = values_of(parts, cited, places)
-    _refuse_choices(cited, places)
+    _refuse_choices(values, places)
     keys = structure(_Keys, _with_names(values), places)
     costs = {preset: _costs(preset, keys, cited) for preset in values.get(MACHINE, {})}
     return Reading(
@@ -165,12 +165,14 @@ def _over(below: Any, above: Any, depth: int) -> Any:
     return below | above | both
 
 
-def _refuse_choices(cited: Cited, places: Mapping[KeyPath, Place]) -> None:
+def _refuse_choices(values: Mapping[str, Any], places: Mapping[KeyPath, Place]) -> None:
     """Raise ConfigError for what only configurations say."""
-    for key in cited.texts:
-        path = tuple(key.split("."))
-        if path[2:3] and path[2] in _NOT_IN_ONE.get(path[0], ()):
-            raise misplaced(path[:3], "expected none: readings do not set it", places)
+    for part, choices in _NOT_IN_ONE.items():
+        below = values.get(part)
+        for name, given in below.items() if isinstance(below, dict) else ():
+            if chosen := [key for key in choices if isinstance(given, dict) and key in given]:
+                problem = "expected none: readings do not set it"
+                raise misplaced((part, name, chosen[0]), problem, places)
 
 
 def _with_names(values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -128,7 +128,9 @@ def _best_classical(runs: Sequence[PolicyRun]) -> str:
         if run is not best and not run.all_resident
     }
     named = f"best classical dataflow: {best.parameters.title}, {format_ps(best_ps)}"
-    return "; ".join([named, *(f"{title} takes {n} times as long" for title, n in times.items())])
+    others = (f"{title} takes {n} times as long" for title, n in times.items())
+    absent = [name for name in CLASSICAL if name not in {run.parameters.name for run in classical}]
+    return "; ".join([named, *others, *(f"{name} was not run" for name in absent)])
 
 
 def _idle_at_first(point: Point) -> list[str]:

@@ -352,6 +352,14 @@ def test_a_baseline_that_names_no_reading_is_of_plain(monkeypatch: pytest.Monkey
     assert "the defaults changed: the baseline is of reading plain" in check().stdout
 
 
+def test_a_file_was_never_the_default_reading() -> None:
+    Path("own.yaml").write_text("description: own\nbased_on: plain\n")
+    Path("c.yaml").write_text(CONFIG + "reading: own.yaml\n")
+    check("--update")
+    Path("c.yaml").write_text(CONFIG)
+    assert "reading is own.yaml in the baseline" in check_refused()
+
+
 def test_a_reading_that_the_configuration_names_is_another_setting() -> None:
     (other,) = {"plain", "mixed"} - {DEFAULT_READING}
     check("--update")

@@ -152,7 +152,17 @@ def test_each_reading_has_its_folder_and_its_claims(
 def test_two_readings_of_one_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="two readings are called 'plain'"):
         reproduce(tmp_path / "out", readings=["plain", "sub/plain.yaml"])
+    with pytest.raises(ConfigError, match="two readings are called 'plain'"):
+        reproduce(tmp_path / "out", readings=["sub/plain.yaml"])
     assert not (tmp_path / "out").exists()
+
+
+def test_the_folder_of_a_reading_holds_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "plain").mkdir()
+    (tmp_path / "plain" / "timings.csv").write_text("of a sweep")
+    with pytest.raises(ConfigError, match=r"plain: holds the files of a sweep: expected those"):
+        reproduce(tmp_path, readings=["mixed", "plain"], watcher=Idle())
+    assert [path.name for path in (tmp_path / "plain").iterdir()] == ["timings.csv"]
 
 
 @pytest.mark.parametrize("name", [*EXPERIMENTS, MODEL])

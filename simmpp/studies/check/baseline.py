@@ -18,6 +18,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, read_csv
 from simmpp.config.config import Config, config_from_mapping, described, with_key
 from simmpp.config.defaults import READING
+from simmpp.config.reading import reading_names
 from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
 from simmpp.run.record import read_record, write_record
@@ -108,8 +109,9 @@ def _other_settings(recorded: dict[str, Any], config: Config) -> str:
 
 def default_changed(recorded: Mapping[str, Any], config: Config) -> bool:
     """Does a configuration leave the reading to a default that was another when it was recorded?"""
-    is_left = READING not in config.kept_source.data
-    return is_left and recorded.get(READING, BEFORE_READINGS) != config.settings.reading
+    was = recorded.get(READING, BEFORE_READINGS)
+    could_be_default = was in reading_names() and READING not in config.kept_source.data
+    return could_be_default and was != config.settings.reading
 
 
 def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import as_file, files
 from itertools import chain
@@ -14,6 +14,7 @@ from simmpp.common.files import write_csv, write_text
 from simmpp.common.folders import REPRODUCTION, claimed
 from simmpp.config.config import Config, load_config
 from simmpp.config.defaults import READING
+from simmpp.config.reading import reading_names
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.plot.curves import Panel
 from simmpp.run.inputs import workload_of
@@ -81,9 +82,9 @@ def reproduce(
         for name, own in overrides.items()
     }
     folders = {name: out / name if len(plans) > 1 else out for name in plans}
-    with claimed(out, REPRODUCTION):
-        for folder in folders.values():
-            folder.mkdir(exist_ok=True)
+    with ExitStack() as claims:
+        for folder in dict.fromkeys([out, *folders.values()]):
+            claims.enter_context(claimed(folder, REPRODUCTION))
         with closing(Journal(out, {"versions": result_versions()})) as journal:
             run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
             done = [
@@ -100,11 +101,11 @@ def reproduce(
 def named(readings: Sequence[str]) -> dict[str, str]:
     """Readings by the names that their folders have, and they in tables.
 
-    Raises ConfigError for two of one name.
+    Raises ConfigError for two of one name, or a file that has the name of one of the package.
     """
     names = [Path(reading).stem for reading in readings]
-    for name in names:
-        if names.count(name) > 1:
+    for name, reading in zip(names, readings, strict=True):
+        if names.count(name) > 1 or (name != reading and name in reading_names()):
             raise ConfigError(f"two readings are called {name!r}: expected different names")
     return dict(zip(names, readings, strict=True))
 

@@ -268,6 +268,21 @@ def test_lines_that_count_are_known() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        (f"memory: {leaf('{transient: 3}')}", "memory"),
+        (f"placement: {{pixels: {{cells: {leaf('8')}}}}}", "placement.pixels.cells"),
+        (
+            f"policy: {{concurrent: {{load_info: {{refresh: {leaf('1 us')}}}}}}}",
+            "policy.concurrent.load_info.refresh",
+        ),
+    ],
+)
+def test_lines_around_and_within_a_key_are_known(text: str, key: str) -> None:
+    assert [line.key for line in of(written(text)).lines_of_reading] == [key]
+
+
 # --- rows are known by what was resolved ---
 
 
@@ -372,6 +387,14 @@ def test_what_is_no_name_is_refused(value: object) -> None:
         ("policy: {object: {packing: {value: all, source: s}}}", "policy.object.packing: value "),
         ("policy: {object: {label: LEAF}}", "policy.object.label: expected none: readings do"),
         ("policy: {object: {name: LEAF}}", "policy.object.name: expected none: readings do"),
+        (
+            "policy: {object: {value: {label: v}, source: s}}",
+            "policy.object: expected none: readings",
+        ),
+        (
+            "machine: {t3e: {value: {shape: v}, source: s}}",
+            "machine.t3e: expected none: readings do",
+        ),
         ("placement: LEAF", "placement: value 'v': expected a mapping (key: value)"),
         ("memory: LEAF", "memory: value 'v': expected a mapping (key: value)"),
         ("policy: LEAF", "policy: value 'v': expected a mapping (key: value)"),
@@ -384,6 +407,7 @@ def test_what_is_no_name_is_refused(value: object) -> None:
         ("machine: {t3e: {tests: LEAF}}", "machine.t3e: unknown key 'tests': did you mean 'test'?"),
         ("machine: {t3e: {contention: LEAF}}", "machine.t3e.contention: expected none: readings"),
         ("machine: {t3e: {preset: LEAF}}", "machine.t3e: unknown key 'preset'"),
+        ("value: 3\nsource: s", "value: expected {value: ..., source: ...}"),
         ("scene: LEAF", "unknown key 'scene': expected one of machine, memory, placement, policy"),
         ("based_on: own.yaml", "based_on: value 'own.yaml': expected mixed or plain"),
         ("based_on: [plain]", "based_on: value ['plain']: expected mixed or plain"),
