@@ -9,7 +9,6 @@ import pytest
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
-from simmpp.common.folders import MARK
 from simmpp.config.config import load_config
 from simmpp.config.settings import DEFAULT_READING
 from simmpp.studies.nebel98.claims import judge
@@ -136,7 +135,7 @@ def test_each_reading_has_its_folder_and_its_claims(
     for name in (DEFAULT_READING, "same"):
         folder = out / name
         written = {path.name for path in folder.iterdir()}
-        assert written == set(of_default) - {FILE, MARK}
+        assert written == set(of_default) - {FILE}
         own = (folder / "claims.csv").read_text().splitlines()
         assert own == [claims[0], *(ln for ln in claims[1:] if ln.startswith(f"{name},"))]
         for figure in (*EXPERIMENTS, MODEL):
