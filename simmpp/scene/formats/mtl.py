@@ -21,7 +21,8 @@ def materials(names: str, folder: Path) -> dict[str, Material | None]:
     A file that can't be read has none: geometry and rays are the same without.
     """
     surfaces: dict[str, Material | None] = {}
-    for file in dict.fromkeys((names, *names.split(" "))):  # a file's name may hold blanks, or there are several
+    # A file's name may hold blanks, or there are several.
+    for file in dict.fromkeys((names, *names.split(" "))):
         path = folder / file.replace("\\", "/")
         if os.path.isfile(path):  # which answers where pathlib raises
             surfaces = _read(path) | surfaces
