@@ -86,6 +86,8 @@ class _State:
     """Signals come to :func:`_interrupt_once`."""
     puts_off = False
     noted: ClassVar[list[int]] = []
+    came: ClassVar[Interrupt | None] = None
+    """The signal that was answered."""
     is_told = False
     """Somebody says, or has said, by what the process is ended."""
 
@@ -117,9 +119,11 @@ def ending_on_signals() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        word, code = last_word(interrupt)
-        _say(word)
-        _leave(code)
+        _end(interrupt)
+    except Exception:
+        if _State.came is None:
+            raise
+        _end(_State.came)  # what a signal breaks off may fail in its own way: a pipe, a worker
     except SystemExit as leaving:
         if leaving.code in [128 + number for number in SIGNALS]:
             _leave(int(leaving.code))
@@ -133,7 +137,8 @@ def _interrupt_once(number: int, frame: FrameType | None) -> None:
         return
     for other in SIGNALS:
         signal.signal(other, _pass)  # not SIG_IGN, which processes begun here would inherit
-    raise Interrupt(number)
+    _State.came = Interrupt(number)
+    raise _State.came
 
 
 def _pass(number: int, frame: FrameType | None) -> None:
@@ -168,6 +173,12 @@ def _end_when_heard(heard: int) -> None:
     if not _State.is_told:
         _say(SIGNALS[signal.Signals(number)])
     os._exit(128 + number)
+
+
+def _end(interrupt: KeyboardInterrupt) -> NoReturn:
+    word, code = last_word(interrupt)
+    _say(word)
+    _leave(code)
 
 
 def _leave(code: int) -> NoReturn:

@@ -58,6 +58,23 @@ def test_terminated_is_likewise(tmp_path: Path, name: str) -> None:
     assert ended_by(signal.SIGTERM, name, 3.0, tmp_path) == (143, ["simmpp: terminated"])
 
 
+def test_what_fails_because_of_a_signal_is_not_told(tmp_path: Path) -> None:
+    """As a pipe to a worker that the same signal has ended."""
+    broken = PROGRAM.replace(
+        "    main()", "    from simmpp.common.interrupts import ending_on_signals"
+    )
+    broken += """
+    import os
+    with ending_on_signals():
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except KeyboardInterrupt:
+            raise BrokenPipeError("the worker is gone") from None
+"""
+    ended = begun(tmp_path, broken, [])
+    assert (ended.communicate()[1], ended.returncode) == ("simmpp: interrupted\n", 130)
+
+
 def test_code_that_hears_nothing_does_not_hold_the_process(tmp_path: Path) -> None:
     """As LLVM, or any other library: here a thousand seconds in one call, in foreign hands."""
     deaf = PROGRAM.replace(
