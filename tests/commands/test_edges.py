@@ -193,9 +193,9 @@ def test_what_a_terminal_can_not_show_is_replaced(name: str, encoding: str) -> N
     assert (missing.returncode, missing.stderr.count(b"\n")) == (2, 1)
 
 
-@pytest.mark.parametrize("name", NAMES, ids=ascii)
-def test_a_name_that_is_no_text_is_one_of_a_file(name: str) -> None:
+def test_a_name_that_is_no_text_is_one_of_a_file() -> None:
     """As input and as output, on the command line, in a --set and beside a configuration."""
+    name = "".join(NAMES)
     folder = Path(name)
     folder.mkdir()
     (folder / f"{name}.nff").write_text(NFF)
@@ -227,7 +227,7 @@ def test_a_name_that_is_no_text_is_one_of_a_file(name: str) -> None:
         done = process(*command)  # whose terminal is no other than a user's
         assert done.returncode == 0, (command, done.stderr)
     rows = (folder / "s" / "results.csv").read_text("utf-8")
-    assert f"\n{name}," in rows or "\nn?," in rows
+    assert f"\nn?{NAMES[1]}," in rows
     (folder / "o" / "report.html").read_text("utf-8")
 
 
