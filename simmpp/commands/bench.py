@@ -8,9 +8,9 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import FAILED, announce_compilation, notice, output, table
+from simmpp.commands.parts import options
+from simmpp.commands.parts.progress import progress_of_sweep
+from simmpp.commands.parts.terminal import FAILED, announce_compilation, notice, output, table
 from simmpp.config.config import load_config
 from simmpp.studies.bench.bench import bench
 from simmpp.studies.bench.errors import Rung

@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import FAILED, notice, output, progress_bars, table
+from simmpp.commands.parts import options
+from simmpp.commands.parts.progress import progress_of_sweep
+from simmpp.commands.parts.terminal import FAILED, notice, output, progress_bars, table
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, write_csv
 from simmpp.common.folders import BASELINE, CHECK

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import output, table
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import output, table
 from simmpp.report.page.comparison import causes, outcome, write_comparison
 from simmpp.report.page.difference import (
     SideBySide,

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import output, texts
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import output, texts
 from simmpp.config.keys import Key, find_keys, listed_keys
 from simmpp.config.reading import MACHINE
 from simmpp.config.schema import json_schema

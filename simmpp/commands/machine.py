@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import output, texts
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import output, texts
 from simmpp.machine.presets import load_preset, preset_names
 from simmpp.machine.torus import LINKS, NO_CONTENTION
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import notice, output, table
-from simmpp.commands.tracing import workload as workload_of
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import notice, output, table
+from simmpp.commands.parts.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
 from simmpp.common.folders import MODEL
 from simmpp.common.units import format_ps

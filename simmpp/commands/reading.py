@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import click
 from rich.table import Table
 
-from simmpp.commands import options
-from simmpp.commands.terminal import output, texts
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import output, texts
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, point_at
 from simmpp.config.defaults import READING

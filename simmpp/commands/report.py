@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import notice, progress_bars
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import notice, progress_bars
 from simmpp.common.units import counted
 from simmpp.report.page.beside import FIGURES_FOLDER
 from simmpp.report.page.figures.stills import Still, stills_of, write_stills

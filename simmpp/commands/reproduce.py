@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.progress import progress_of_sweep
-from simmpp.commands.terminal import FAILED, announce_compilation, notice, output, table
+from simmpp.commands.parts import options
+from simmpp.commands.parts.progress import progress_of_sweep
+from simmpp.commands.parts.terminal import FAILED, announce_compilation, notice, output, table
 from simmpp.common.errors import ConfigError
 from simmpp.config.reading import load_reading
 from simmpp.studies.nebel98.reproduce import Reproduction, named, reproduce

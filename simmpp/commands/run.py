@@ -10,11 +10,11 @@ import click
 import numpy as np
 from rich.progress import TaskID
 
-from simmpp.commands import options
+from simmpp.commands.parts import options
+from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
+from simmpp.commands.parts.terminal import FAILED, notice, output, progress_bars
+from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
-from simmpp.commands.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
-from simmpp.commands.terminal import FAILED, notice, output, progress_bars
-from simmpp.commands.tracing import workload
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
 from simmpp.config.config import Config, load_config

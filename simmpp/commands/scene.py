@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from simmpp.commands import options
-from simmpp.commands.terminal import OBJECTS_SHOWN, output, texts
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, output, texts
 from simmpp.common.files import write_text
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
@@ -107,7 +107,7 @@ def _cell(value: object) -> str:
 def _preview(scene: Scene, path: Path) -> None:
     """The picture of the scene's own camera."""
     # Only --preview traces, which needs numba.
-    from simmpp.commands.tracing import workload_of_scene
+    from simmpp.commands.parts.tracing import workload_of_scene
     from simmpp.workload.trace.shading import render, save_png
 
     picture = Picture(resolution=PREVIEW_RESOLUTION)

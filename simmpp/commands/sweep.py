@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands import options
+from simmpp.commands.parts import options
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import start_server
 
@@ -56,10 +56,10 @@ def sweep_command(
     if workers > 1 and cluster is None:
         start_server()
     # Not at the top: the server of the workers and this process load numba and the rest at once.
-    from simmpp.commands.progress import progress_of_sweep
+    from simmpp.commands.parts.progress import progress_of_sweep
+    from simmpp.commands.parts.sweep_result import print_result
+    from simmpp.commands.parts.terminal import announce_compilation
     from simmpp.commands.reading import print_readings_of_sweep
-    from simmpp.commands.sweep_result import print_result
-    from simmpp.commands.terminal import announce_compilation
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
 

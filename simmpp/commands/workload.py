@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from simmpp.commands import options
-from simmpp.commands.terminal import OBJECTS_SHOWN, output, table
-from simmpp.commands.tracing import workload
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, output, table
+from simmpp.commands.parts.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
 from simmpp.config.config import config_from_mapping, load_config

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from calls import begin_in, simmpp
 
-from simmpp.commands.options import window_of
+from simmpp.commands.parts.options import window_of
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.common.units import format_ps
 from simmpp.methods.columns import result_columns

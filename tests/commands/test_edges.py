@@ -151,7 +151,7 @@ def test_a_full_disk_is_told_with_the_file_and_leaves_no_part(
     command: tuple[str, ...], file: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # figures are drawn right here: other processes would not have this one's limit
-    monkeypatch.setattr("simmpp.commands.options.available_cores", lambda: 1)
+    monkeypatch.setattr("simmpp.commands.parts.options.available_cores", lambda: 1)
     simmpp("workload", "c.yaml")  # into the cache: of that another test speaks
     simmpp("scene", "tetra:2", "--preview", "p.png")
     written(Path("r"), [row(), row("ray")])

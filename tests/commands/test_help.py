@@ -12,7 +12,7 @@ import pytest
 from calls import simmpp
 
 from simmpp.cli import COMMANDS, main
-from simmpp.commands.options import ENGINES
+from simmpp.commands.parts.options import ENGINES
 from simmpp.engine import simulate
 
 REPOSITORY = Path(__file__).parents[2]

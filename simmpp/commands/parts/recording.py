@@ -11,8 +11,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.commands import options
-from simmpp.commands.terminal import progress_bars
+from simmpp.commands.parts import options
+from simmpp.commands.parts.terminal import progress_bars
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import PICTURES
 from simmpp.engine.record.log import Sink

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from simmpp.commands.terminal import announce_compilation, notice, progress_bars
+from simmpp.commands.parts.terminal import announce_compilation, notice, progress_bars
 from simmpp.config.config import Config
 from simmpp.run.inputs import workload_of
 from simmpp.scene.scene import Scene

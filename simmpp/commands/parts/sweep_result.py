@@ -10,7 +10,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from simmpp.commands.terminal import FAILED, notice, output
+from simmpp.commands.parts.terminal import FAILED, notice, output
 from simmpp.config.settings import Settings
 from simmpp.policy.parameters import REFERENCE
 from simmpp.sweeps.profits import missed

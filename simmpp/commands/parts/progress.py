@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
-from simmpp.commands.terminal import notice
+from simmpp.commands.parts.terminal import notice
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.plan import Plan
 from simmpp.sweeps.profits import best_policy

@@ -72,7 +72,7 @@ def announce_compilation(*, simulating: bool = True) -> None:
     If both are, and there is a core for each, the engine is compiled by a process beside this one
     until the command ends.
     """
-    from simmpp.commands.options import available_cores
+    from simmpp.commands.parts.options import available_cores
     from simmpp.common.compiled import cache_folder, is_compiled, keeps_code
     from simmpp.common.modules import CANDIDATES, ENGINE
     from simmpp.sweeps.compile_engine import engine_compiled_beside

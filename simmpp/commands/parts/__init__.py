@@ -1,0 +1,1 @@
+"""What several commands share: their options, what they print, how they show progress."""
