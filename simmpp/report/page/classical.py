@@ -17,9 +17,9 @@ from simmpp.common.files import Row
 from simmpp.common.units import share
 from simmpp.methods.columns import PLACE
 from simmpp.placement.placement import AS_FRACTION
-from simmpp.report.page.contest import makespan_ratios, means, replicated_policies
-from simmpp.report.page.points import Points
-from simmpp.report.page.words import is_number
+from simmpp.run.words import is_number
+from simmpp.sweeps.winners.contest import makespan_ratios, means, replicated_policies
+from simmpp.sweeps.winners.points import Points
 
 KEPT = "memory.transient"
 FREE = ("placement.pixels", "placement.owners", "memory.residents", KEPT)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 
 from simmpp.common.units import counted
 from simmpp.policy.parameters import REFERENCE
-from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.classical import FREE, Duel, duels_of
-from simmpp.report.page.contest import (
+from simmpp.run import words
+from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
     SURE,
@@ -24,7 +24,7 @@ from simmpp.report.page.contest import (
     contests_of,
     replicated_policies,
 )
-from simmpp.report.page.points import Points
+from simmpp.sweeps.winners.points import Points
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def _classical(points: Points) -> Iterator[str]:
             by_title.setdefault(points.profits[duel.other]["policy"], []).append(duel)
     for title, duels in by_title.items():
         ways = Counter(words.policy(points.profits[duel.classical]["policy"]) for duel in duels)
-        flow, times = words.policy(title), range_text(duel.ratio for duel in duels)
+        flow, times = words.policy(title), words.span(duel.ratio for duel in duels)
         free = [name for name in FREE if name in points.axes]
         beaten = sum(duel.ratio < 1 for duel in duels)
         if len(duels) == 1:
@@ -145,7 +145,7 @@ def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
     ceilings = [contest.ceiling for contest in contests if contest.ceiling is not None]
     if ceilings:
         beaten = sum(ceiling < 1 for ceiling in ceilings)
-        longer = range_text(1 / ceiling for ceiling in ceilings)
+        longer = words.span(1 / ceiling for ceiling in ceilings)
         text = (
             "With everything in every memory (replicated, no dataflow) the picture takes "
             f"{longer} times as long as with the fastest dataflow"
@@ -183,7 +183,7 @@ def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -
             winner,
             _where(points, contests, places, along),
             len(places),
-            range_text(points.profits[contest.best]["time_profit"] for contest in won),
+            words.span(points.profits[contest.best]["time_profit"] for contest in won),
             _lead(points, won),
             _sure(won),
         )
@@ -213,7 +213,7 @@ def _lead(points: Points, won: Sequence[Contest]) -> str:
     seconds = {points.profits[contest.second or 0]["policy"] for contest in ahead}
     if not ahead:
         return ""
-    lead = range_text((contest.lead - 1) * 100 for contest in ahead)
+    lead = words.span((contest.lead - 1) * 100 for contest in ahead)
     return f"{lead} % over {' or '.join(sorted(seconds))}"
 
 
@@ -230,12 +230,3 @@ def _sure(won: Sequence[Contest]) -> str:
     if counts[UNSURE] == len(won):
         return "no difference that these seeds can show"
     return f"beyond the 95 % interval at {counts[SURE]} of {len(won)}"
-
-
-def range_text(values: Iterable[float]) -> str:
-    """``"1.3 to 1.71"``; one number where all are the same."""
-    ordered = sorted(value for value in values if words.is_number(value))
-    if not ordered:
-        return ""
-    low, high = f"{ordered[0]:.3g}", f"{ordered[-1]:.3g}"
-    return low if low == high or math.isnan(ordered[0]) else f"{low} to {high}"

@@ -13,8 +13,8 @@ from simmpp.common.files import Row
 from simmpp.report.page.classical import duels_of
 from simmpp.report.page.findings import sentences
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of
+from simmpp.sweeps.winners.points import Points, points_of
 
 
 def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:

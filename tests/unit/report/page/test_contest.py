@@ -8,7 +8,9 @@ import pytest
 from sweep_rows import failed, row
 
 from simmpp.common.files import Row
-from simmpp.report.page.contest import (
+from simmpp.report.page.findings import sentences, wins
+from simmpp.run import words
+from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
     SURE,
@@ -18,8 +20,7 @@ from simmpp.report.page.contest import (
     contests_of,
     replicated_policies,
 )
-from simmpp.report.page.findings import range_text, sentences, wins
-from simmpp.report.page.points import points_of
+from simmpp.sweeps.winners.points import points_of
 
 T_2 = 4.302652729911275
 """Student's t of 97.5 % with 2 degrees of freedom (any table)."""
@@ -123,4 +124,4 @@ def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
     [((1.0, 1.7123), "1 to 1.71"), ((2.0001, 2.0), "2"), ((), ""), ((1, math.inf), "1 to inf")],
 )
 def test_spans(values: tuple[float, ...], text: str) -> None:
-    assert range_text(values) == text
+    assert words.span(values) == text

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from statistics import fmean
 
-from simmpp.common.files import Row
-from simmpp.methods.columns import PLACE
+from simmpp.common.files import Row, sort_key
+from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CLASSICAL, REFERENCE
-from simmpp.report.page.arrangement import varying_axes
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order
 
+KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 ACCOUNTS = {account: f"{account}_ps" for account in ("compute", "communication", "waiting")}
 """What PEs spend their time with, and its column."""
 KINDS = {f"{kind}s": f"{kind}_messages" for kind in ("request", "object", "ray", "load")}
@@ -72,6 +72,16 @@ class Points:
     def _knows(self, number: int, columns: Iterable[str]) -> bool:
         runs = self.runs[number]
         return bool(runs) and all(row[column] != "" for column in columns for row in runs)
+
+
+def varying_axes(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[object]]:
+    """The axes along which rows differ, but for policy and seed."""
+    axes: dict[str, list[object]] = {}
+    for name in (*KEY_AXES, *further):
+        values = {row[name] for row in rows}
+        if len(values) > 1:
+            axes[name] = sorted(values, key=lambda cell: sort_key({"": cell}, ("",)))
+    return axes
 
 
 def points_of(

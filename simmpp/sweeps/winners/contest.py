@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from simmpp.policy.parameters import CEILING
-from simmpp.report.page.points import Points
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.winners.points import Points
 
 SURE, UNSURE, EQUAL, ALONE, TOO_FEW_SEEDS = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""
