@@ -14,7 +14,18 @@ PAPER_WORDS = {
 }
 """Policies in the paper's words; a label of the user stays as it is."""
 ALONG = {"fraction": "the fraction of the scene", "processors": "the number of PEs"}
+ACTIONS = {
+    "object": "Fetch the objects",
+    "ray": "Send the rays",
+    "concurrent": "Let each node choose",
+    "replicated": "Hold everything everywhere",
+}
+"""What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}
+CAUSES = {"scene": "the scene", "processors": "the number of PEs", "fraction": "the memory"}
+"""Keys as what decides."""
+CLOSE = 1.1
+"""Ratios up to here are told as percentages."""
 
 
 def policy(title: str) -> str:
@@ -69,3 +80,51 @@ def span(values: Iterable[float]) -> str:
         return ""
     low, high = f"{ordered[0]:.3g}", f"{ordered[-1]:.3g}"
     return low if low == high or math.isnan(ordered[0]) else f"{low} to {high}"
+
+
+def values(name: str, cells: list[Any]) -> str:
+    """``"8, 64 PEs"``, ``"memory for 5 %, 10 % of the scene"``, ``"mountain:4, rings:2"``."""
+    if name == "scene" or "" in cells:
+        return ", ".join(said(name, cell) for cell in cells)
+    return _framed(name, ", ".join(value(name, cell) for cell in cells))
+
+
+def between(name: str, low: Any, high: Any) -> str:
+    """``"4 to 64 PEs"``, ``"memory for 5 % to 100 % of the scene"``."""
+    return _framed(name, f"{value(name, low)} to {value(name, high)}")
+
+
+def up_to(name: str, high: Any) -> str:
+    """``"up to 64 PEs"``, ``"memory for up to 5 % of the scene"``."""
+    return _framed(name, f"up to {value(name, high)}")
+
+
+def from_on(name: str, low: Any) -> str:
+    """``"at least 64 PEs"``, ``"memory for at least 5 % of the scene"``."""
+    return _framed(name, f"at least {value(name, low)}")
+
+
+def _framed(name: str, text: str) -> str:
+    """Values of a key with what they are of, for those who don't know its name."""
+    if name == "processors":
+        return f"{text} PE" if text == "1" else f"{text} PEs"
+    return f"memory for {text} of the scene" if name == "fraction" else f"{name} {text}"
+
+
+def times_as_long(ratios: Iterable[float]) -> str:
+    """``"1.2 to 480 times as long"``, ``"0.4 % to 3.2 % longer"`` where that says more."""
+    ordered = sorted(ratio for ratio in ratios if is_number(ratio) and not math.isnan(ratio))
+    if not ordered:
+        return ""
+    low, high = ordered[0], ordered[-1]
+    if low >= 1 and high < CLOSE:
+        return f"{span((ratio - 1) * 100 for ratio in ordered)} % longer"
+    if 1 <= low < CLOSE:
+        return f"{(low - 1) * 100:.2g} % longer to {high:.2g} times as long"
+    return f"{span(ordered)} times as long"
+
+
+def any_of(names: Iterable[str], joint: str = "or") -> str:
+    """``"a, b or c"``; each once."""
+    *first, last = dict.fromkeys(names)
+    return f"{', '.join(first)} {joint} {last}" if first else last

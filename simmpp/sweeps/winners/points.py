@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
 from statistics import fmean
+from types import MappingProxyType
+from typing import Any
 
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CLASSICAL, REFERENCE
+from simmpp.run import words
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.profits import profit_rows, profits_in_order
 
@@ -20,7 +24,7 @@ KINDS = {f"{kind}s": f"{kind}_messages" for kind in ("request", "object", "ray",
 """Messages by kind, and their columns."""
 
 
-NO_LABELS: Mapping[str, str] = {}
+NO_LABELS: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -34,8 +38,31 @@ class Points:
     groups: list[int]
     """Number of its place: what all policies there have in common."""
     further: tuple[str, ...]
-    classical: frozenset[str] = frozenset(CLASSICAL)
-    """Titles of the classical dataflows."""
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """Policies by label, as far as known."""
+
+    def name(self, number: int) -> str:
+        """The policy of a point, where its label is another one's or known; else its label."""
+        title = str(self.profits[number]["policy"])
+        return self.labels.get(title, title)
+
+    def flow(self, number: int) -> str:
+        """The policy of a point as the paper calls it."""
+        return words.policy(str(self.profits[number]["policy"]))
+
+    def taken(self, number: int) -> str:
+        """``"Send the rays: ray dataflow"``; a label with what it is a label of, if known."""
+        flow, name = self.flow(number), self.name(number)
+        if name not in words.ACTIONS:
+            return words.capital(flow)
+        is_label = name != self.profits[number]["policy"]
+        return f"{words.ACTIONS[name]}: {flow}{f' ({words.policy(name)})' if is_label else ''}"
+
+    @cached_property
+    def classical(self) -> frozenset[str]:
+        """Titles of the classical dataflows."""
+        labels = {label for label, name in self.labels.items() if name in CLASSICAL}
+        return frozenset({*CLASSICAL, *labels})
 
     @cached_property
     def runs(self) -> list[list[Row]]:
@@ -54,6 +81,64 @@ class Points:
         for number, group in enumerate(self.groups):
             places[group].append(number)
         return places
+
+    @cached_property
+    def cases(self) -> list[list[int]]:
+        """The places; those that are the same simulations, wherever they were asked for, once."""
+        found: dict[object, list[int]] = {}
+        for place in self.places:
+            keys = self._keys(place), self._held[place[0]], self._simulations(place)
+            found.setdefault(keys, place)
+        return list(found.values())
+
+    def held(self, number: int) -> Any:
+        """Where a point lies along x: the share of the objects that PEs of its place really hold.
+
+        That is at least their own objects, and a whole number of them. Where several places hold
+        the same and are different simulations all the same, as with room for x fetched objects
+        besides, each lies where it was asked for.
+        """
+        return self._held[number]
+
+    def at(self, number: int, name: str) -> Any:
+        """Where a point lies along an axis, in words: x as asked, unless PEs hold more than that.
+
+        A whole number of objects is not told from what was asked for.
+        """
+        cell = self.profits[number][name]
+        is_less = (
+            name == "fraction" and cell != "" and cell * self.profits[number]["processors"] < 1
+        )
+        return self._held[number] if is_less else cell
+
+    @cached_property
+    def _held(self) -> list[Any]:
+        alike: dict[tuple[object, ...], list[list[int]]] = {}
+        for place in self.places:
+            alike.setdefault((self._keys(place), self._least_held(place)), []).append(place)
+        held: list[Any] = [row["fraction"] for row in self.profits]
+        for (_, share), places in alike.items():
+            if share != "" and len({self._simulations(place) for place in places}) == 1:
+                for number in chain(*places):
+                    held[number] = share if held[number] != "" else ""
+        return held
+
+    def _keys(self, place: list[int]) -> tuple[object, ...]:
+        """What names a place, but x."""
+        names = (name for name in (*PLACE, *self.further) if name != "fraction")
+        return tuple(self.profits[place[0]][name] for name in names)
+
+    def _least_held(self, place: list[int]) -> Any:
+        """What PEs hold there, by the policy that holds least; the replicated scene is all."""
+        cells = [self.profits[number]["effective_fraction"] for number in place]
+        return min((cell for cell in cells if cell != ""), default="")
+
+    def _simulations(self, place: list[int]) -> tuple[object, ...]:
+        return tuple(
+            (self.profits[n]["policy"], r["seed"], r["makespan_ps"], r["messages"])
+            for n in place
+            for r in self.runs[n]
+        )
 
     def shares(self, number: int) -> dict[str, float]:
         """Shares of all PEs' time over all seeds, by account; none where a row does not know."""
@@ -115,8 +200,7 @@ def points_of(
         place = tuple(profit[name] for name in names)
         groups.append(numbers.setdefault(place, len(numbers)))
         seeds.append(finished(places[place][profit["policy"]]))
-    classical = {*CLASSICAL, *(label for label, name in labels.items() if name in CLASSICAL)}
-    return Points(profits, seeds, groups, further, frozenset(classical))
+    return Points(profits, seeds, groups, further, labels)
 
 
 def _counts(policies: Mapping[str, Seeds]) -> dict[str, int]:

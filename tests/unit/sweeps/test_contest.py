@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
+from statistics import stdev
 
 import pytest
-from sweep_rows import failed, row
+from sweep_rows import failed, row, timed
 
 from simmpp.common.files import Row
-from simmpp.report.page.findings import sentences, wins
-from simmpp.run import words
 from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
@@ -26,10 +25,6 @@ T_2 = 4.302652729911275
 """Student's t of 97.5 % with 2 degrees of freedom (any table)."""
 
 
-def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
-    return [row(policy, seed, makespan_ps=t, **cells) for seed, t in enumerate(makespans_ps)]
-
-
 def only(rows: list[Row]) -> Contest:
     (found,) = contests_of(points_of(rows, ()))
     return found
@@ -37,11 +32,11 @@ def only(rows: list[Row]) -> Contest:
 
 def test_the_lead_is_the_mean_of_the_seeds_own_ratios() -> None:
     found = only(timed("object", 300, 500, 400) + timed("ray", 100, 250, 200))
-    assert found.lead == pytest.approx((3 + 2 + 2) / 3)
-    half = T_2 * math.sqrt(1 / 3) / math.sqrt(3)  # of 3, 2, 2
-    assert (found.low, found.high) == pytest.approx((7 / 3 - half, 7 / 3 + half))
-    assert found.low < 1
-    assert found.certainty == UNSURE
+    assert found.lead == pytest.approx((3 * 2 * 2) ** (1 / 3))
+    logarithms = [math.log(value) for value in (3, 2, 2)]
+    factor = math.exp(T_2 * stdev(logarithms) / math.sqrt(3))
+    assert (found.low, found.high) == pytest.approx((found.lead / factor, found.lead * factor))
+    assert found.certainty == SURE
 
 
 def test_a_lead_is_sure_beyond_its_interval() -> None:
@@ -84,44 +79,32 @@ def test_where_all_is_resident_nobody_is_the_replicated_scene() -> None:
     assert replicated_policies(points_of(rows, ())) == {"replicated"}
 
 
-def at(fraction: float, *of: tuple[str, tuple[int, ...]]) -> list[Row]:
-    return [r for policy, t in of for r in timed(policy, *t, fraction=fraction)]
+def test_a_lead_is_sure_only_if_it_is_over_every_other() -> None:
+    rows = timed("ray", 100, 100, 100) + timed("object", 110, 110, 110)
+    rows += timed("concurrent", 100, 300, 100)
+    found = only(rows)
+    assert found.certainty == UNSURE
+    assert found.second is not None  # the mean of the third is larger, yet it may be the fastest
+    assert points_of(rows, ()).flow(found.second) == "object dataflow"
+    assert [points_of(rows, ()).flow(n) for n in found.rivals] == ["concurrent dataflow"]
 
 
-def test_neighbours_with_one_winner_are_one_line() -> None:
-    rows = at(0.1, ("object", (300, 301)), ("ray", (100, 100)))
-    rows += at(0.2, ("object", (200, 201)), ("ray", (100, 100)))
-    rows += at(0.4, ("object", (100, 100)), ("ray", (110, 130)))
-    rows += at(0.8, ("object", (303, 302)), ("ray", (100, 100)))
-    rows += at(1.0, ("object", (100, 100)), ("ray", (100, 100)))
-    found = wins(points_of(rows, ()))
-    assert [(w.winner, w.where, w.places) for w in found] == [
-        ("ray", "10 % to 20 %, 80 %", 3),
-        ("object", "40 %", 1),
-        ("object = ray", "100 %", 1),
+def test_the_winner_does_not_depend_on_how_ratios_are_taken() -> None:
+    """By mean makespans ray dataflow would be slower, by the mean ratio it would lead."""
+    found = only(timed("object", 100, 1000) + timed("ray", 10, 10000))
+    assert found.lead == pytest.approx(1)
+
+
+def test_places_that_are_the_same_simulations_are_one_case() -> None:
+    rows = [
+        row(p, fraction=x, effective_fraction=0.125, makespan_ps=t)
+        for p, t in (("object", 9), ("ray", 5))
+        for x in (0.01, 0.05)
     ]
-    assert found[0].profit == "2 to 3.02"
-    assert found[0].lead == "100 to 202 % over object"
-    assert [w.sure for w in found] == [
-        "beyond the 95 % interval at each",
-        "no difference that these seeds can show",
-        "equal in every seed",
-    ]
-    first, *_ = sentences(points_of(rows, ()))
-    assert first == (
-        "Of 5 places (x) the fastest dataflow is ray dataflow at 3; object dataflow at 1 (by no "
-        "more than seeds differ); at 1 the two fastest are equal."
+    rows += [row(p, fraction=0.5, makespan_ps=7) for p in ("object", "ray")]
+    points = points_of(rows, ())
+    assert [points.at(case[0], "fraction") for case in points.cases] == [0.125, 0.5]
+    other = points_of(
+        [*rows[:-1], row("ray", fraction=0.05, makespan_ps=4, effective_fraction=0.125)], ()
     )
-
-
-def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
-    assert sentences(points_of([failed()], ())) == ["No point has a result."]
-    assert sentences(points_of([], ())) == ["No point has a result."]
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [((1.0, 1.7123), "1 to 1.71"), ((2.0001, 2.0), "2"), ((), ""), ((1, math.inf), "1 to inf")],
-)
-def test_spans(values: tuple[float, ...], text: str) -> None:
-    assert words.span(values) == text
+    assert [other.at(case[0], "fraction") for case in other.cases] == [0.01, 0.05, 0.5]
