@@ -84,8 +84,8 @@ SENTENCES: dict[str, tuple[list[Row], list[str]]] = {
         [
             "Who wins depends on the memory: ray dataflow is fastest in 2 of 4 cases (memory for "
             "up to 40 % of the scene), object dataflow in 1 (memory for 60 % of the scene); the "
-            "next takes 4 % longer to 3 times as long, in each case beyond chance (95 % intervals, 3 "
-            "seeds).",
+            "next takes 4 % longer to 3 times as long, in each case beyond chance (95 % intervals, "
+            "3 seeds).",
             "In 1 of 4 cases (memory for 100 % of the scene) object dataflow and ray dataflow are "
             "equally fast.",
         ],
