@@ -11,10 +11,10 @@ from sweep_rows import HOSTILE, written
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.report.page import words
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
+from simmpp.run import words
+from simmpp.sweeps.winners.points import Points, points_of
 
 PAGES = ["report", "run", "bench", "reproduction", "comparison"]
 LOOKS = [(400, "light"), (400, "dark"), (1400, "light"), (1400, "dark")]

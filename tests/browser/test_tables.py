@@ -11,8 +11,8 @@ from sweep_rows import HOSTILE, row, written
 
 from simmpp.common.files import Row
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
+from simmpp.sweeps.winners.points import points_of
 
 TABLE = "#all-points"
 EMPTY = "\u2013"
@@ -127,3 +127,13 @@ def test_a_row_leads_to_its_point_however_rows_are_sorted(opened: Any, report: P
     title = page.locator("#point-title", has_text="mountain:4, 64 PEs, x = 10 %: ray dataflow")
     title.wait_for()
     assert unquote(page.url).endswith("#point=mountain:4|64|0.1|ray")
+
+
+def test_a_sentence_leads_to_the_rows_that_say_so(opened: Any, report: Path) -> None:
+    page = opened(report).page
+    sentence = page.locator("#summary li", has_text="Ray dataflow: time profit").first
+    sentence.locator("a.rows").click()
+    gains = column(page, "time profit")
+    assert set(column(page, "policy")) == {"ray dataflow"}
+    assert all(gain[:4] in sentence.inner_text() for gain in gains)
+    assert page.locator("#only").inner_text().startswith("Only those of “Ray dataflow: time profit")

@@ -23,7 +23,7 @@ FORMS = {
     "object dataflow": "object dataflow",
     "owner": "owners?",
     "PE": "PEs?",
-    "place": "places?",
+    "place": "places?|cases?",
     "ray dataflow": "ray dataflow",
     "reading": "reading",
     "replica": "replicas?",
