@@ -1,4 +1,4 @@
-"""The table that ``simmpp run`` prints: one column per policy, one line per measure."""
+"""What ``simmpp run`` says: a table with a column for each policy, and what one has to know."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
@@ -19,15 +16,9 @@ from simmpp.run.profit import ratio
 Cell = Callable[[PolicyRun], str]
 
 
-def summary(point: Point, runs: Sequence[PolicyRun]) -> Group:
-    """What was simulated, the table, the bound, and what the user may not expect of the runs."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("", no_wrap=True)
-    for run in runs:
-        table.add_column(run.parameters.title, justify="right", no_wrap=True)
-    for label, cell in _lines(runs):
-        table.add_row(label, *map(cell, runs))
-    return Group(Text(heading(point)), Text(), table, Text(), Text("\n".join(_notes(point, runs))))
+def measures(runs: Sequence[PolicyRun]) -> list[tuple[str, list[str]]]:
+    """The name of each measure, and what it is for each policy."""
+    return [(label, [cell(run) for run in runs]) for label, cell in _lines(runs)]
 
 
 def heading(point: Point) -> str:
@@ -143,12 +134,13 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
-def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+    """The bound, the best classical dataflow, and what the user may not expect of the runs."""
     bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
-    notes = [bound, _best_classical(runs), *_idle_at_first(point)]
-    notes += [
+    lines = [bound, _best_classical(runs), *_idle_at_first(point)]
+    lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs
         for rule in run.result.rules_never_fired
     ]
-    return notes
+    return lines

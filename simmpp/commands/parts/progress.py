@@ -7,10 +7,9 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
-from simmpp.commands.parts.terminal import notice
+from simmpp.commands.parts.terminal import errors, notice
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.plan import Plan
 from simmpp.sweeps.profits import best_policy
@@ -108,7 +107,7 @@ class BarWatcher(CountingWatcher):
 @contextmanager
 def progress_of_sweep() -> Iterator[Watcher]:
     """Who tells the user how a sweep gets on."""
-    console = Console(stderr=True)
+    console = errors()
     if not console.is_terminal:
         yield LineWatcher()
         return
