@@ -23,9 +23,10 @@ from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import RECORD, RESULTS, write_rows
+from simmpp.run.rows import RECORD, RESULTS, row, write_rows
 from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
+from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
@@ -155,9 +156,13 @@ def _simulate(
 
 
 def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
-    """What was simulated, every measure of every policy, and what one has to know of them."""
+    """What was simulated, who wins, every measure of every policy, and what one has to know."""
     titles = [run.parameters.title for run in runs]
+    labels = {run.parameters.title: run.parameters.name for run in runs}
     say(f"{heading(point)}\n")
+    for sentence in answer_of([row(point, run) for run in runs], labels=labels):
+        say(sentence.text)
+    say()
     say(numbers(titles, measures(runs)))
     say()
     for note in notes(point, runs):

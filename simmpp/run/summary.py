@@ -124,6 +124,33 @@ def _best_classical(runs: Sequence[PolicyRun]) -> str:
     return "; ".join([named, *others, *(f"{name} was not run" for name in absent)])
 
 
+def _memory(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+    """Whether everything fits; a share of the scene is no number of bytes that could be exceeded.
+
+    ``memory.bytes`` is room for resident objects: rays and fetched objects come on top, and the
+    simulation bounds neither.
+    """
+    workload, room = point.workload, point.config.memory.bytes
+    if point.placement.effective_fraction == 1:
+        scene = format_bytes(int(workload.object_bytes.sum()))
+        return [f"the whole scene, {scene}, fits into every memory: nothing has to be sent"]
+    if room is None:
+        return []
+    held = {run.parameters.title: run.result.peak_bytes for run in runs if not run.all_resident}
+    if max(held.values()) <= room:
+        most = format_bytes(max(held.values()))
+        return [f"everything fits into memory: at most {most} on a PE, rays included"]
+    beyond = ", ".join(
+        f"{title} {format_bytes(size)} ({_times(ratio(size, room))} times as much)"
+        for title, size in held.items()
+        if size > room
+    )
+    return [
+        f"memory.bytes, {format_bytes(room)}, holds resident objects; with rays and fetched "
+        f"objects a PE holds up to: {beyond}"
+    ]
+
+
 def _idle_at_first(point: Point) -> list[str]:
     """How many PEs have no pixel, where there are such: more PEs than rows, or than pixels."""
     nb, (rows, columns) = point.machine.processors, point.workload.picture
@@ -137,7 +164,7 @@ def _idle_at_first(point: Point) -> list[str]:
 def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     """The bound, the best classical dataflow, and what the user may not expect of the runs."""
     bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
-    lines = [bound, _best_classical(runs), *_idle_at_first(point)]
+    lines = [bound, _best_classical(runs), *_memory(point, runs), *_idle_at_first(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

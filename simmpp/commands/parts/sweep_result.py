@@ -13,15 +13,21 @@ from simmpp.commands.parts.tables import Fitting, table
 from simmpp.commands.parts.terminal import FAILED, notice, say
 from simmpp.config.settings import Settings
 from simmpp.policy.parameters import REFERENCE
+from simmpp.report.page.folder import read_folder
 from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
+from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.points import points_of
 
 PROFITS_SHOWN = 40
 
 
 def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
-    """Print what came out; the exit code."""
+    """Print who wins, the profits, and what failed; the exit code."""
+    for sentence in _answer(out):
+        say(sentence.text)
+    say()
     rows = result.rows
     failed = rows[rows["error"].notna()]
     say(_table(result))
@@ -34,6 +40,12 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
     for error, count in failed["error"].value_counts().items():
         notice(f"{count} failed: {error}")
     return FAILED if len(failed) else 0
+
+
+def _answer(out: Path) -> list[Sentence]:
+    """Who wins, as the page of the folder says."""
+    folder = read_folder(out)
+    return answer(points_of(folder.rows, folder.further, folder.profits, folder.labels))
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:
