@@ -28,7 +28,9 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
-    yield repr((source_digest(TRACER), dataclasses.astuple(picture))).encode()
+    picture = picture.of(scene)
+    _, *settings = dataclasses.astuple(picture)
+    yield repr((source_digest(TRACER), picture.pixels, *settings)).encode()
     camera = scene.camera
     yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
