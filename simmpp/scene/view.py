@@ -51,11 +51,7 @@ def listed(expected: str, least: int) -> tuple[Any, Any, Expect]:
             raise ConfigError(f"value {shown(value)}: expected {expected}")
         return value
 
-    return (
-        Field(min_length=least),
-        parsed_by(parse),
-        Expect(expected),
-    )  # the first is for the schema
+    return Field(min_length=least), parsed_by(parse), Expect(expected)
 
 
 def _is_angle(value: object) -> bool:
