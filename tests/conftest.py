@@ -24,14 +24,18 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """How many tests each layer ran, and how long they took with what they had to prepare."""
-    tests, seconds = Counter[str](), defaultdict[str, float](float)
+    """Tests and seconds of each layer, with what they had to prepare; examples that were fuzzed."""
+    tests, seconds, tried = Counter[str](), defaultdict[str, float](float), Counter[str]()
     for outcome, reports in terminalreporter.stats.items():
         for report in reports:
             if isinstance(report, pytest.TestReport):
                 tests[layer(report.nodeid)] += report.when == "call" or outcome == "skipped"
                 seconds[layer(report.nodeid)] += report.duration
+                if report.when == "teardown":  # each phase's report repeats the properties
+                    tried.update(dict(report.user_properties).get("tried", {}))
     if seconds:
         terminalreporter.section("layers")
-    for name, duration in seconds.items():
-        terminalreporter.line(f"{name:10}{tests[name]:6} tests {duration:8.1f} s")
+    for name in sorted(seconds):
+        terminalreporter.line(f"{name:10}{tests[name]:6} tests {seconds[name]:8.1f} s")
+    for name in sorted(tried):
+        terminalreporter.line(f"{tried[name]:6} {name}")

@@ -24,7 +24,7 @@ DEADLINE_S = 30
 """No example below takes a second; this is a hang."""
 LONGEST_LINE = 1000
 TRIED = Counter[str]()
-"""Examples by what became of them; printed at the end of the run."""
+"""Examples of the running test by what became of them; the run ends with their sums."""
 
 
 def examples(few: int) -> settings:

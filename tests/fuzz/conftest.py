@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,10 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", COMPILED)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """How many examples the readers were tried with."""
+@pytest.fixture(autouse=True)
+def tried(record_property: Callable[[str, object], None]) -> Iterator[None]:
+    """The number of examples goes to the summary, whichever process ran the test."""
+    TRIED.clear()
+    yield
     if TRIED:
-        terminalreporter.section("fuzz")
-    for name in sorted(TRIED):
-        terminalreporter.line(f"{TRIED[name]:6} {name}")
+        record_property("tried", dict(TRIED))
