@@ -102,6 +102,16 @@ def workers(help_text: str) -> Callable[[Any], Any]:
     return click.option("--workers", type=Whole(1, 4096), help=help_text)
 
 
+no_code = click.option(
+    "--no-code",
+    "may_run",
+    flag_value=False,
+    default=True,
+    help="Refuse policies that are files: such a file is code, which is run.",
+)
+"""``--no-code``, which the command gets as ``may_run``."""
+
+
 def available_cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
