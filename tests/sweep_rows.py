@@ -13,6 +13,8 @@ from simmpp.run.rows import RESULTS, in_order
 
 SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
 """Of a policy; others are as fast as object dataflow."""
+HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
+"""A label that harms a page which doesn't escape it."""
 
 
 def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
@@ -41,6 +43,11 @@ def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
         "waiting_ps": 3 * 10**11,
         "error": "",
     } | cells
+
+
+def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
+    """Rows of one policy, one a seed, with these makespans."""
+    return [row(policy, seed, makespan_ps=t, **cells) for seed, t in enumerate(makespans_ps)]
 
 
 def failed(policy: str = "object", seed: int = 0, **cells: Any) -> Row:

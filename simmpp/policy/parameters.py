@@ -141,7 +141,9 @@ class PolicyParameters:
     """A policy of one's own in place of a `name`: a Python file with `POLICY = Policy(...)`, which
     is run (see `simmpp policy`)."""
     set: Annotated[
-        dict[str, int] | None, parsed_by(parse_numbers), Expect(NUMBERS, {"type": "object"})
+        tuple[tuple[str, int], ...] | None,
+        parsed_by(parse_numbers),
+        Expect(NUMBERS, {"type": "object"}),
     ] = None
     """The policy's own numbers that are not to be what its file says."""
 
@@ -203,7 +205,7 @@ class PolicyParameters:
     def _are_its_own(cls, numbers: Any, others: ValidationInfo) -> Any:
         own = others.data.get("file")
         known = _policy(own).parameters if own else {}
-        for name in numbers or ():
+        for name, _ in numbers or ():
             if name not in known:
                 has_none = f"{others.data.get('name')} has no numbers of its own"
                 raise mistake(unknown(name, sorted(known)) if known else has_none)
@@ -217,7 +219,7 @@ class PolicyParameters:
     @property
     def numbers(self) -> tuple[int, ...]:
         """Its own numbers, in their order."""
-        return tuple({**self.rules.parameters, **(self.set or {})}.values())
+        return tuple({**self.rules.parameters, **dict(self.set or ())}.values())
 
     @property
     def packs(self) -> bool:

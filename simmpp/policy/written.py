@@ -65,12 +65,12 @@ def own_policy(value: object) -> object:
 
 
 def parse_numbers(value: object) -> object:
-    """Whole numbers by name, times in picoseconds and sizes in bytes."""
+    """Names with whole numbers, times in picoseconds and sizes in bytes; pairs can be hashed."""
     if value is None:
         return None
-    if not isinstance(value, dict):
+    if not isinstance(value, dict | tuple):
         raise ConfigError(f"value {shown(value)}: expected {NUMBERS}")
-    return {str(name): _number(str(name), number) for name, number in value.items()}
+    return tuple((str(name), _number(str(name), number)) for name, number in dict(value).items())
 
 
 def _number(name: str, value: object) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -110,6 +111,11 @@ no_code = click.option(
     help="Refuse policies that are files: such a file is code, which is run.",
 )
 """``--no-code``, which the command gets as ``may_run``."""
+
+
+def call() -> str:
+    """The words by which simmpp was called, as a shell takes them."""
+    return shlex.join(click.get_current_context().obj or ())
 
 
 def available_cores() -> int:

@@ -8,11 +8,10 @@ from typing import Any
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS, PACKED
 from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
-from simmpp.report.page import words
-from simmpp.report.page.arrangement import KEY_AXES
 from simmpp.report.page.figures.figure import styles_of
-from simmpp.report.page.points import ACCOUNTS, KINDS, Points
+from simmpp.run import words
 from simmpp.sweeps.profits import MEASURES, STATISTICS
+from simmpp.sweeps.winners.points import ACCOUNTS, KEY_AXES, KINDS, Points
 
 MOST_EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""
@@ -27,6 +26,17 @@ def depth_of(points: Points) -> dict[str, Any]:
     packed = [name for name in PACKED if rows and name in rows[0][1]]
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
+        "values": {
+            words.SHORT.get(name, name): [
+                words.value(name, profits[numbers[0]][name]) for numbers in points.places
+            ]
+            for name in points.axes
+        },
+        "keys": {
+            name: _column((profits[numbers[0]] for numbers in points.places), name)
+            for name in (*KEY_AXES, *points.further)
+        },
+        "titles": titles,
         "policies": [words.policy(title) for title in titles],
         "styles": [style % N_COLOURS for style in styles_of(profits).values()],
         "accounts": dict(ACCOUNTS),
