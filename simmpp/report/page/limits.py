@@ -83,9 +83,8 @@ def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
     points = limits.points
     best = [contest.best for contest in contests_of(points) if contest.best in limits.of]
     if len(best) == 1:
-        yield Sentence(
-            f"{words.capital(points.flow(best[0]))}: {limits.told(best[0])}", tuple(best)
-        )
+        flow = words.capital(points.flow(best[0]))
+        yield Sentence(f"{flow} is {limits.of[best[0]]}.", tuple(best))
     elif best:
         counts = Counter(limits.of[number].first for number in best)
         parts = []

@@ -111,7 +111,9 @@ def _own_objects(data: ProfitData) -> str:
     if any(points.held(n) != rows[n]["fraction"] for n in less):
         notes.append("where PEs own more than x, points lie at what they hold")
     if any(points.held(n) == rows[n]["fraction"] for n in less):
-        notes.append("below the share that PEs own, x is only room for fetched objects")
+        notes.append(
+            "PEs hold at least what they own: below that, x is only room for fetched objects"
+        )
     return "".join(f"; {note}" for note in notes)
 
 
