@@ -27,7 +27,7 @@ from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
-from simmpp.workload.sources import FILES
+from simmpp.workload.scene_settings import FILES
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,7 @@ def _structured(source: Source) -> Config:
         data, places, lambda path: _folder_of([path], places, folder), may_run=source.may_run
     )
     settings = structure(Settings, filled(read, reading), places)
-    scenes = _folder_of([("scene", key) for key in FILES], places, folder)
+    scenes = _folder_of([("scene", key) for key in (*FILES, "parts")], places, folder)
     return Config(settings, scenes, reading, source)
 
 

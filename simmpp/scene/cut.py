@@ -23,7 +23,9 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
 from simmpp.scene.scene import Floats
 
-OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
+OBJECTS = "nodes, components, groups or {clusters: 500} (triangles each at most)"
+OF_OBJ = "groups"
+"""Only this format has them."""
 Indices = NDArray[np.integer[Any]]
 """Whole numbers of any width."""
 Cut = Callable[[Floats, Indices], list[Indices]]
@@ -33,12 +35,12 @@ Cut = Callable[[Floats, Indices], list[Indices]]
 def cut_named(objects: object) -> tuple[str, Cut]:
     """Label and cut for the configuration's ``objects``.
 
-    ``nodes`` keeps a scene node whole, ``components`` parts what no vertex joins,
-    ``{clusters: k}`` bisects until no object has more than k triangles. Raises ConfigError, which
-    says what was expected.
+    ``nodes`` keeps a scene node whole, as ``groups`` does each group of a node of OBJ,
+    ``components`` parts what no vertex joins, ``{clusters: k}`` bisects until no object has more
+    than k triangles. Raises ConfigError, which says what was expected.
     """
-    if objects == "nodes":
-        return "nodes", _whole
+    if objects in ("nodes", OF_OBJ):
+        return str(objects), _whole
     if objects == "components":
         return "components", _components
     if isinstance(objects, Mapping) and set(objects) == {"clusters"}:
