@@ -17,7 +17,7 @@ from simmpp.common.units import shown
 from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.defaults import READING, filled, lines_used
-from simmpp.config.overrides import Places, override, set_key
+from simmpp.config.overrides import Override, Places, override, refuse_both, set_key
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.machine import Machine
@@ -107,8 +107,8 @@ class Config:
         return self.settings.memory
 
 
-def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
-    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+def load_config(path: str | Path, overrides: Sequence[Override] = ()) -> Config:
+    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them, or options.
 
     Raises ConfigError, one line with file, line, key, value and what was expected.
     """
@@ -126,7 +126,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
 
 
 def config_from_mapping(
-    mapping: Mapping[str, object], overrides: Sequence[str] = (), folder: Path = Path()
+    mapping: Mapping[str, object], overrides: Sequence[Override] = (), folder: Path = Path()
 ) -> Config:
     """Check a configuration given as Python data with the keys of the YAML file.
 
@@ -150,9 +150,10 @@ def with_key(config: Config, key: str, value: object) -> Config:
 
 
 def _checked(
-    data: dict[str, Any], places: Places, folder: Path, overrides: Sequence[str] = ()
+    data: dict[str, Any], places: Places, folder: Path, overrides: Sequence[Override] = ()
 ) -> Config:
     """The configuration, once it and all values that are swept are found right."""
+    refuse_both(overrides)
     for assignment in overrides:
         override(data, assignment, places)
     config = _structured(data, places, folder)
