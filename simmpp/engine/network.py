@@ -17,9 +17,14 @@ def depart(s: Run, m: Row) -> None:
     if s.contends:
         inject(s, m)
     else:
-        n_hops = hops(topology(s), m.source, m.destination)
-        flight_ps = s.latency_ps + n_hops * s.hop_latency_ps + transfer_ps(n_bytes, s.bytes_per_s)
-        m.arrival_ps = m.depart_ps + flight_ps
+        m.arrival_ps = m.depart_ps + flight_ps(s, m.source, m.destination, n_bytes)
+
+
+@kernel
+def flight_ps(s: Run, source: int, destination: int, n_bytes: int) -> int:
+    """How long a message of that many bytes, with its header, travels if nothing is in its way."""
+    n_hops = hops(topology(s), source, destination)
+    return s.latency_ps + n_hops * s.hop_latency_ps + transfer_ps(n_bytes, s.bytes_per_s)
 
 
 @kernel
