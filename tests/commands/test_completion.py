@@ -80,6 +80,14 @@ def test_names() -> None:
     assert completed("keys", "see") == ["seeds"]
 
 
+def test_baselines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for folder in ("b", "a/ci"):
+        Path(folder).mkdir(parents=True)
+        Path(folder, "profits.csv").touch()
+    assert completed("check", "--baseline", "") == ["a/ci/profits.csv", "b/profits.csv"]
+
+
 @pytest.mark.parametrize("asked", [("run", "c"), ("check", "--baseline", "c"), ("scene", "c")])
 def test_files(asked: tuple[str, ...]) -> None:
     assert completed(*asked) == ["c"]  # with the type "file", for the shell to complete

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from glob import iglob
 from typing import Any
 
 import click
@@ -11,6 +12,8 @@ from click.shell_completion import BashComplete, CompletionItem, add_completion_
 
 from simmpp.commands.parts.words import POLICIES, PRESETS, READINGS, SCENES, words
 
+PROFITS, DEEPEST = "profits.csv", 5
+"""What names a baseline, and folders in folders that it may lie in."""
 Items = list[CompletionItem[str]]
 Complete = Callable[[click.Context, click.Parameter, str], Items]
 
@@ -64,6 +67,12 @@ def _policies(ctx: click.Context, param: click.Parameter, incomplete: str) -> It
     return _begun((f"{before}{comma}{name}" for name in words()[POLICIES]), incomplete)
 
 
+def _baselines(ctx: click.Context, param: click.Parameter, incomplete: str) -> Items:
+    """Those not far below this folder; else files."""
+    found = (path for depth in range(1, DEEPEST) for path in iglob(f"{'*/' * depth}{PROFITS}"))
+    return _begun(sorted(found), incomplete) or _files(ctx, param, incomplete)
+
+
 def _keys(ctx: click.Context, param: click.Parameter, incomplete: str) -> Items:
     return _begun(words()["keys"], incomplete)
 
@@ -81,6 +90,7 @@ def _assignments(ctx: click.Context, param: click.Parameter, incomplete: str) ->
 _COMPLETE: dict[str, Complete] = {
     "--set": _assignments,
     "--policy": _policies,
+    "--baseline": _baselines,
     "--reading": _named(READINGS, or_files=True),
     "spec": _named(SCENES, or_files=True),
     "preset": _named(PRESETS),
