@@ -14,6 +14,7 @@ Without the welding every triangle of an STL file would be a component of its ow
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,8 @@ from simmpp.scene.scene import Floats
 OBJECTS = "nodes, components, groups or {clusters: 500} (triangles each at most)"
 OF_OBJ = "groups"
 """Only this format has them."""
-Indices = NDArray[np.int64]
+Indices = NDArray[np.integer[Any]]
+"""Whole numbers of any width."""
 Cut = Callable[[Floats, Indices], list[Indices]]
 """Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
 

@@ -17,7 +17,7 @@ from simmpp.common.displayed import Displayed
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
-from simmpp.common.folders import SWEEP, claimed
+from simmpp.common.folders import SWEEP, claimed, note_call
 from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
@@ -90,13 +90,16 @@ def run_sweep(
     timeout_s: float | None = None,
     out: str | Path | None = None,
     watcher: Watcher | None = None,
+    call: str = "",
 ) -> SweepResult:
     """Simulate all points of a configuration, given as data or as the name of a YAML file.
 
     Points run in this process, in ``workers`` processes, on the Dask ``cluster`` of that address,
     or on a ``pool`` of one's own, which is closed; rows are the same. With ``out``, a folder,
-    finished points are kept there, a second call continues, and the tables are written as files.
-    One point may take ``timeout_s`` seconds; one that fails has its row with an ``error``.
+    finished points are kept there, a second call continues, and the tables are written as files;
+    one with more seeds, values or policies adds to what is there. Whoever looks at an unfinished
+    folder is told ``call``, the command that goes on. One point may take ``timeout_s`` seconds;
+    one that fails has its row with an ``error``.
     Raises InputError if the configuration is wrong or the folder holds another sweep's results.
     """
     require_kind("config", config, Mapping, Config, str, Path)
@@ -113,6 +116,8 @@ def run_sweep(
         closing(_results(plan, folder)) as results,
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
+        if folder is not None and call:
+            note_call(folder, call)
         tables = _run(plan, results, own, folder, watcher or Watcher())
     return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]), folder)
 
@@ -224,7 +229,7 @@ def write_tables(plan: Plan, results: Results, folder: Path) -> TablesByFile:
     for name, (rows, columns) in tables.items():
         write_csv(rows, columns, folder / name)
     write_parquet(*tables[RESULTS], folder / PARQUET)
-    write_record(plan.record, folder / RECORD)
+    write_record(plan.record(results.outcomes), folder / RECORD)
     return tables
 
 

@@ -137,6 +137,7 @@ def _attribute(arrays: Arrays, primitive: Primitive, name: str, weights: Weights
 
 def _faces(arrays: Arrays, primitive: Primitive, vertices: int) -> Indices:
     """(m, 3) into ``vertices`` vertices."""
+    corners: Indices
     if primitive.indices is None:
         corners = np.arange(vertices)
     else:
