@@ -56,7 +56,9 @@ class Opened:
         return int(self.page.evaluate(f"{root}.scrollWidth - {root}.clientWidth"))
 
     def draw_all(self) -> None:
-        """Scroll through the page until each chart is drawn."""
+        """Unfold all, and scroll through the page until each chart is drawn."""
+        unfold = "document.querySelectorAll('details').forEach((each) => { each.open = true; })"
+        self.page.evaluate(unfold)
         for chart in self.page.locator(".chart").all():
             chart.scroll_into_view_if_needed()
             chart.locator(".main-svg").first.wait_for()
