@@ -90,9 +90,9 @@ def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
         parts = []
         for part, count in counts.most_common():
             of = [limits.of[n].shares[part] * 100 for n in best if limits.of[n].first == part]
-            parts.append(f"{part} in {count} ({words.span(of)} % of the makespan)")
-        text = f"The fastest dataflow is limited most by {', '.join(parts)} of {len(best)} cases."
-        yield Sentence(text, tuple(best))
+            number = f"{count} of {len(best)} cases" if not parts else f"{count}"
+            parts.append(f"by {part} in {number} ({words.span(of)} % of the makespan)")
+        yield Sentence(f"The fastest dataflow is limited most {', '.join(parts)}.", tuple(best))
 
 
 def limit_table(limits: PointLimits) -> list[Row]:
