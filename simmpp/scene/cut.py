@@ -48,29 +48,12 @@ def cut_named(objects: object) -> tuple[str, Cut]:
     raise ConfigError(f"value {shown(objects)}: expected {OBJECTS}")
 
 
-def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
-    """The mesh with equal positions made one vertex, in order of first use by a face.
-
-    File formats repeat a vertex for each normal or texture coordinate; STL for each triangle.
-    """
-    used = vertices[faces.ravel()]
-    order = np.lexsort(used.T)
-    ordered = used[order]
-    is_new = np.ones(len(order), dtype=np.bool_)
-    # Compared as numbers, not as bytes: 0.0 and -0.0 are one position.
-    is_new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
-    first = order[is_new]  # the sort is stable
-    rank = np.empty_like(first)
-    rank[np.argsort(first)] = np.arange(len(first))
-    index = np.empty_like(order)
-    index[order] = rank[np.cumsum(is_new) - 1]
-    return used[np.sort(first)], index.reshape(faces.shape)
-
-
 def compacted(
     vertices: Floats, faces: Indices, parts: list[Indices]
 ) -> list[tuple[Floats, NDArray[np.int32]]]:
     """Of each part the vertices that its faces use, in order of index, and its faces into them."""
+    if len(parts) == 1 and _are_all_used(vertices, faces):
+        return [(vertices, faces[parts[0]].astype(np.int32, copy=False))]
     # One sort for all parts: a key is a vertex of one part, whichever others share it.
     sizes = np.array([len(rows) for rows in parts])
     part = np.repeat(np.arange(len(parts)), sizes)
@@ -87,6 +70,12 @@ def compacted(
     )
 
 
+def _are_all_used(vertices: Floats, faces: Indices) -> bool:
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[faces] = True
+    return bool(used.all())
+
+
 def _whole(_vertices: Floats, faces: Indices) -> list[Indices]:
     return [np.arange(len(faces))]
 
@@ -101,10 +90,13 @@ def _components(vertices: Floats, faces: Indices) -> list[Indices]:
     rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
     n = len(vertices)
     links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))
-    _, labels = connected_components(links, directed=False)
+    n_labels, labels = connected_components(links, directed=False)
+    if n_labels == 1:
+        return _whole(vertices, faces)
     label = labels[faces[:, 0]]
-    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
-    rank = np.argsort(np.argsort(first))[inverse]
+    first = np.full(n_labels, len(faces))
+    first[label[::-1]] = np.arange(len(faces))[::-1]
+    rank = np.argsort(np.argsort(first))[label]
     order = np.argsort(rank, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(rank[order])) + 1)
 

@@ -14,14 +14,16 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import SceneError
+from simmpp.common.garbage import uncollected
 from simmpp.scene.boxes import scene_box
-from simmpp.scene.cut import Cut, compacted, cut_named, welded
+from simmpp.scene.cut import Cut, compacted, cut_named
 from simmpp.scene.formats import obj, off, ply, stl
 from simmpp.scene.framing import framing
 from simmpp.scene.nff_words import LARGEST
-from simmpp.scene.node import Node
+from simmpp.scene.node import Node, are_usable
 from simmpp.scene.packed import kind_of, read_whole
 from simmpp.scene.scene import SKY_BLUE, Material, MeshPart, Scene, Vector
+from simmpp.scene.weld import welded
 
 
 def _gltf(data: bytes, file: Path) -> list[Node]:
@@ -59,9 +61,10 @@ def load_mesh(path: str | PathLike[str], *, objects: object = "components") -> S
     label, cut = cut_named(objects)
     materials: dict[Material, int] = {}
     parts: list[MeshPart] = []
-    for node in _nodes(file):
-        material = materials.setdefault(node.material, len(materials))
-        parts.extend(_parts(node, cut, material))
+    with uncollected():
+        for node in _nodes(file):
+            material = materials.setdefault(node.material, len(materials))
+            parts.extend(_parts(node, cut, material))
     if not parts:
         raise SceneError("no triangles", where=str(file))
     bounds = scene_box(parts)
@@ -83,15 +86,14 @@ def _parts(node: Node, cut: Cut, material: int) -> Iterator[MeshPart]:
 
 def _nodes(file: Path) -> Iterator[Node]:
     """The meshes of a file that have triangles."""
-    data = read_whole(file)
     read = READERS.get(kind_of(file))
     if read is None:
         known = f"neither NFF (.nff) nor a mesh that is read ({', '.join(READERS)}, or .gz of one)"
         raise SceneError(f"{known}: convert it to GLB, OBJ or PLY", where=str(file))
-    for node in read(data, file):
+    for node in read(read_whole(file), file):
         if not len(node.faces):
             continue
-        if not np.all(np.abs(node.vertices[node.faces]) <= LARGEST):
+        if not (are_usable(node.vertices) or are_usable(node.vertices[node.faces])):
             problem = f"a vertex of {node.name!r} is not a finite number of at most {LARGEST:g}"
             raise SceneError(problem, where=str(file))
         yield node
