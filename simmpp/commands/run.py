@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -11,8 +12,10 @@ import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
-from simmpp.commands.parts.terminal import FAILED, notice, output, progress_bars
+from simmpp.commands.parts.tables import numbers
+from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, wrote
 from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
@@ -21,9 +24,10 @@ from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import RECORD, RESULTS, write_rows
-from simmpp.run.summary import summary
+from simmpp.run.rows import RECORD, RESULTS, row, write_rows
+from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
+from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
@@ -59,6 +63,7 @@ from simmpp.workload.trace.verify import verify
     "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
 )
+@options.no_code
 @click.option(
     "--verify",
     is_flag=True,
@@ -74,6 +79,7 @@ def run_command(
     window: str | None,
     figures: Path | None,
     verify: bool,
+    may_run: bool,
 ) -> None:
     """Compare dataflow policies at one point.
 
@@ -81,7 +87,8 @@ def run_command(
     Object dataflow is run as the reference of the profits and the replicated scene as the ceiling,
     if they are not named.
     """
-    config = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(config)
     options.writable(picture, "--picture", ".png")
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
@@ -116,8 +123,9 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         if out and runs:
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
-    output().print(summary(point, runs))
+    _print(point, runs)
     print_reading(config)
+    _print_files(out, looks)
     if verify:
         _verify(point, runs)
 
@@ -151,6 +159,31 @@ def _simulate(
                 recorder.end(run)
 
 
+def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
+    """What was simulated, who wins, every measure of every policy, and what one has to know."""
+    titles = [run.parameters.title for run in runs]
+    labels = {run.parameters.title: run.parameters.name for run in runs}
+    say(f"{heading(point)}\n")
+    for sentence in answer_of([row(point, run) for run in runs], labels=labels):
+        say(sentence.text)
+    say()
+    say(numbers(titles, measures(runs)))
+    say()
+    for note in notes(point, runs):
+        say(note)
+
+
+def _print_files(out: Path | None, looks: Looks) -> None:
+    """Which there are now, and the command that goes on with them."""
+    rows = [out / RECORD, out / RESULTS] if out else []
+    files = [*rows, *filter(None, (looks.picture, looks.timeline, looks.figures))]
+    if files:
+        say()
+    wrote(*files)
+    if out:
+        go_on("report", out)
+
+
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     scene = scene_of(point.config.ray_source, "--picture")()
@@ -166,7 +199,7 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
         rays, objects = (nothing if column is None else column for column in tests)
         problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
-        click.echo(f"verify {run.parameters.title}: {verdict}")
+        say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None
     if failed:
         sys.exit(FAILED)

@@ -37,6 +37,9 @@ def describe(scene: Scene) -> dict[str, Any]:
         "transmitting": sum(surface.transmits for surface in surfaces),
         "materials": _materials(scene),
         "lights": [_plain(light) for light in scene.lights],
+        "view": scene.origin.view,
+        "cameras": [name for name, _ in scene.origin.cameras],
+        "notes": list(scene.origin.notes),
         # No renderer here has a near plane.
         "camera": {k: v for k, v in _plain(scene.camera).items() if k != "hither"},
         "background": list(scene.background),

@@ -29,7 +29,9 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
-    yield memoryview(repr((source_digest(TRACER), dataclasses.astuple(picture))).encode())
+    picture = picture.of(scene)
+    _, *settings = dataclasses.astuple(picture)
+    yield memoryview(repr((source_digest(TRACER), picture.pixels, *settings)).encode())
     camera = scene.camera
     yield _numbers(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _numbers(*(x for light in scene.lights if picture.shadows for x in light.position))

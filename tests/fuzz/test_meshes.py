@@ -92,7 +92,7 @@ def read_or_refused(kind: str, content: bytes) -> None:
     with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):  # as load_mesh
         warnings.simplefilter("error")
         try:
-            nodes = READERS[kind](content, Path(f"a.{kind}"))
+            nodes = READERS[kind](content, Path(f"a.{kind}")).nodes
         except SceneError as error:
             TRIED[f"{kind}: refused"] += 1
             message = str(error)

@@ -78,6 +78,7 @@ def trace(
     require_kind("scene", scene, Scene)
     require_kind("picture", picture, Picture)
     check_scene(scene)
+    picture = picture.of(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)
     _require_memory(rows * columns, scene.name)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simmpp.scene import weld
-from simmpp.scene.weld import welded
+from simmpp.scene import cut
+from simmpp.scene.cut import welded
 
 # Few, so that many places are the same; neighbours; both zeros.
 NUMBERS = st.sampled_from(
@@ -35,7 +35,7 @@ def test_welded(rows: list[tuple[float, float, float]], data: st.DataObject) -> 
 
 
 def test_places_of_one_number_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(weld, "ODD", np.zeros(3, np.uint64))
+    monkeypatch.setattr(cut, "ODD", np.zeros(3, np.uint64))
     vertices = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (5, 5, 5)])
     kept, faces = welded(vertices, np.array([(3, 2, 0), (0, 1, 2)]))
     assert kept.tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
@@ -46,4 +46,4 @@ def test_neighbours_in_float32_have_numbers_of_their_own() -> None:
     """Else a fine mesh would be sorted by its places after all."""
     side = np.float32(1) + np.arange(100, dtype=np.float32) * np.float32(2**-23)
     places = np.stack(np.meshgrid(side, side, side), axis=-1).reshape(-1, 3).astype(np.float64)
-    assert len(np.unique(weld._numbers(places.view(np.uint64)))) == len(places)
+    assert len(np.unique(cut._numbers(places.view(np.uint64)))) == len(places)
