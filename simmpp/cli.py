@@ -62,6 +62,10 @@ class Commands(click.Group):
         """Import the command; None if there is none so called."""
         if cmd_name not in COMMANDS:
             return None
+        if ctx.resilient_parsing:  # a shell completes words
+            from simmpp.commands.parts.completion import command as with_words
+
+            return with_words(cmd_name, COMMANDS[cmd_name])
         module = import_module(f"simmpp.commands.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
@@ -126,3 +130,7 @@ def main() -> None:
     Simulates a parallel machine that traces the real rays of a scene that does not fit into the
     memory of one of its processing elements (PEs).
     """
+
+
+if "_SIMMPP_COMPLETE" in os.environ:  # set by the shell when words are to be completed
+    import_module("simmpp.commands.parts.completion")
