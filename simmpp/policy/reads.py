@@ -31,8 +31,8 @@ def numbers_read(policy: Policy) -> list[str]:
 
 
 def knows_loads(policy: Policy) -> bool:
-    """Does it read loads of others? Without, headers are not remembered."""
-    return reads(policy, *GROUPS[LOADS])
+    """Does it read loads of others, or go by them? Without, headers are not remembered."""
+    return policy.to_holders or reads(policy, *GROUPS[LOADS])
 
 
 def settings_used(policy: Policy) -> tuple[str, ...]:

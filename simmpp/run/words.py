@@ -13,6 +13,7 @@ PAPER_WORDS = {
     "ray": "ray dataflow",
     "concurrent": "concurrent dataflow",
     "replicated": "replicated scene",
+    "holders": "dataflow to all holders",
 }
 """Policies in the paper's words; a label of the user stays as it is."""
 ALONG = {"fraction": "the fraction of the scene", "processors": "the number of PEs"}
@@ -21,6 +22,7 @@ ACTIONS = {
     "ray": "Send the rays",
     "concurrent": "Let each node choose",
     "replicated": "Hold everything everywhere",
+    "holders": "Let each node choose among all that hold the object",
 }
 """What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}
