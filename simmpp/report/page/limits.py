@@ -15,9 +15,9 @@ from simmpp.report.page.folder import Folder
 from simmpp.run import words
 from simmpp.run.limits import PARTS, Limits, MessageCosts, limits_of, together
 from simmpp.sweeps.intervals import of_logarithms
-from simmpp.sweeps.winners.answer import Sentence
 from simmpp.sweeps.winners.contest import contests_of
 from simmpp.sweeps.winners.points import ACCOUNTS, Points
+from simmpp.sweeps.winners.sentence import Sentence
 
 NEEDED = (*ACCOUNTS.values(), "messages", "bytes_sent", "rays_sent", "request_messages")
 """Columns that a method may not know."""
