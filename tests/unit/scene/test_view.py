@@ -107,6 +107,9 @@ def test_a_camera_of_the_file_by_name_and_by_number() -> None:
     # Its own up is the way it was held there: from elsewhere, y is upwards.
     moved = load_scene({"mesh": "seen.glb", "camera": {"name": "Down", "eye": [3, 1, 0]}})
     assert moved.camera.up == (0, 1, 0)
+    whole = load_scene({"mesh": "seen.glb", "camera": "everything"})
+    assert whole.origin.camera == "a camera that sees everything"
+    assert whole.camera.angle_degrees == 45 and whole.camera.at == (0.5, 0.5, 0)
     assert first.origin.notes == ("camera 'Flat' is left out: orthographic, not perspective",)
 
 
@@ -143,7 +146,7 @@ def test_a_camera_of_the_file_by_name_and_by_number() -> None:
         ("camera", {"at": [0, 5, float("nan")]}, "scene.camera.at: value [0, 5, nan]: expected"),
         ("camera", {"at": [0, 5, 1e31]}, "scene.camera.at: value [0, 5, 1e+31]: expected three"),
         ("camera", {"fov": 3}, "scene.camera: unknown key 'fov': expected one of angle, at, eye"),
-        ("camera", "Top", "a.obj:components: the file has no camera 'Top': expected none, it has"),
+        ("camera", "Top", "a.obj:components: there is no camera 'Top': expected 0 ('everything')"),
         ("camera", -1, "scene.camera.name: value -1: expected the name or number of a camera"),
         ("camera", [0, 1, 2], "scene.camera: value [0, 1, 2]: expected a mapping (key: value)"),
         (
@@ -216,9 +219,10 @@ def test_no_parts() -> None:
 
 
 def test_cameras_that_a_file_with_cameras_has_not() -> None:
-    expected = "expected 0 ('Front'), 1 ('Down')"
-    assert refusal(mesh="seen.glb", camera=2).endswith(f"the file has no camera 2: {expected}")
+    expected = "expected 0 ('Front'), 1 ('Down'), 2 ('everything')"
+    assert refusal(mesh="seen.glb", camera=3).endswith(f"there is no camera 3: {expected}")
     assert refusal(mesh="seen.glb", camera="Flat").endswith(f"no camera 'Flat': {expected}")
+    assert refusal(nff="own.nff", camera="a").endswith("'a': expected parts of its only one")
     assert "or up [0.0, 1.0, 0.0] is along" in refusal(mesh="seen.glb", camera="Down", up="y")
 
 
