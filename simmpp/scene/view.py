@@ -157,7 +157,10 @@ def _camera(scene: Scene, view: View) -> tuple[str, Camera]:
     up = camera.up
     if own.eye is not None or own.at is not None:
         up = scene.origin.up or up  # seen from elsewhere, how it was held means nothing
-    up = own.up or (AXES[view.up] if view.up else up)
+    if view.up and own.up is None:
+        up = AXES[view.up]
+        said = f"{said.removesuffix(f', {view.up} up')}, {view.up} up"
+    up = own.up or up
     eye, at, angle = own.eye or camera.eye, own.at or camera.at, own.angle or camera.angle_degrees
     return said, replace(camera, eye=eye, at=at, up=up, angle_degrees=float(angle))
 

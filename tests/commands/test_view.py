@@ -34,7 +34,7 @@ def test_a_scene_says_its_cameras_and_what_was_not_read() -> None:
     done = simmpp("scene", "d/yard.yaml", "--set", "scene.lights=[]", "--preview", "y.png")
     assert done.exit_code == 0, done.output
     lines = done.stdout.splitlines()
-    assert "seen by a camera as set, lit by 0 lights as set" in lines
+    assert "seen by a camera as set, z up, lit by 0 lights as set" in lines
     lost = "mtllib 'lost.mtl' is left out: can't read the file: No such file or directory"
     assert lost in lines
     assert size("y.png") == (512, 288)

@@ -66,6 +66,9 @@ def test_without_any_it_is_as_it_was() -> None:
     )
     assert seen(up="z").camera.up == (0, 0, 1)
     assert seen(up="z").camera.eye != plain.camera.eye
+    assert seen(up="z").origin.camera == "a camera that sees everything, z up"
+    upright = load_scene({"nff": "own.nff", "up": "y"})
+    assert upright.camera.up == (0, 1, 0) and upright.origin.camera == "its own camera, y up"
     nff = load_scene("own.nff")
     assert (nff.camera.eye, nff.camera.resolution) == ((1, 2, 3), (64, 32))
     assert nff.origin.view == "seen by its own camera, lit by its own lights"
@@ -77,7 +80,7 @@ def test_parts_of_a_camera_leave_the_rest() -> None:
     assert (camera.eye, camera.at, camera.angle_degrees) == (plain.camera.eye, plain.camera.at, 20)
     scene = seen(camera={"eye": [0, 0, 5], "at": [0, 1, 0]}, up="z")
     assert (scene.camera.eye, scene.camera.at, scene.camera.up) == ((0, 0, 5), (0, 1, 0), (0, 0, 1))
-    assert scene.origin.camera == "a camera as set" and scene.lights == seen(up="z").lights
+    assert scene.origin.camera == "a camera as set, z up" and scene.lights == seen(up="z").lights
     nff = load_scene({"nff": "own.nff", "camera": {"eye": [5, 0, 0]}})
     assert (nff.camera.eye, nff.camera.at, nff.camera.up) == ((5, 0, 0), (0, 0, 0), (0, 0, 1))
     assert nff.camera.resolution == (64, 32) and nff.camera.angle_degrees == 40
