@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import OBJECTS_SHOWN, output, texts
+from simmpp.commands.parts.tables import texts
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
 from simmpp.common.files import write_text
 from simmpp.common.units import counted, format_bytes
 from simmpp.scene.describe import describe, object_table
@@ -46,21 +47,23 @@ def scene_command(spec: str, nff: Path | None, preview: Path | None, all_objects
         write_text(write_nff(scene), nff)
     if preview:
         _preview(scene, preview)
+    wrote(*filter(None, (nff, preview)))
+    if nff:
+        go_on("run", "CONFIG", "--set", f"scene={nff}")
 
 
 def _list(scene: Scene, most_objects: int | None) -> None:
     """Print counts, camera, lights, materials and objects; the first ones of a long list."""
     facts = describe(scene)
-    console = output()
-    console.print("\n".join(_facts(facts)), soft_wrap=True)
-    console.print()
+    say("\n".join(_facts(facts)))
+    say()
     _print(facts["materials"], MATERIALS_SHOWN if most_objects else None)
     objects = object_table(scene)
     rows = objects if most_objects is None else objects.head(most_objects)
-    console.print()
+    say()
     _print(rows.to_dict("records"))
     if len(rows) < len(objects):
-        console.print(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
+        say(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
 
 
 def _facts(facts: dict[str, Any]) -> list[str]:
@@ -91,9 +94,9 @@ def _print(rows: list[dict[Any, Any]], most: int | None = None) -> None:
     """Print rows as a table; beyond ``most`` only their number."""
     names = list(rows[0]) if rows else []
     cells = [[_cell(value) for value in row.values()] for row in rows[:most]]
+    say(texts(names, cells, whole=len(names)))
     if most is not None and len(rows) > most:
-        cells.append([f"... {len(rows) - most} more"])
-    output().print(texts(names, cells, whole=len(names)))
+        say(f"... {len(rows) - most} more")
 
 
 def _cell(value: object) -> str:

@@ -7,10 +7,9 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
-from simmpp.commands.parts.terminal import notice
+from simmpp.commands.parts.terminal import errors, notice
 from simmpp.common.units import counted
 from simmpp.sweeps.journal import FILE as JOURNAL
 from simmpp.sweeps.journal import Outcome
@@ -131,7 +130,7 @@ def progress_of_sweep(call: str = "") -> Iterator[Watcher]:
 
 @contextmanager
 def _shown() -> Iterator[CountingWatcher]:
-    console = Console(stderr=True)
+    console = errors()
     if not console.is_terminal:
         yield LineWatcher()
         return
