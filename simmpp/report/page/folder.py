@@ -13,6 +13,7 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
 from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS, PACKED
+from simmpp.run import words
 from simmpp.run.record import read_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
 from simmpp.studies.bench.bench import BENCH
@@ -45,6 +46,15 @@ class Folder:
     """Those of ``bench.csv``."""
     record: Mapping[str, Any] = field(default_factory=dict)
     """``run.json``."""
+    parts: Mapping[str, Folder] = field(default_factory=dict)
+    """By name, the folders that these are the rows of, where there are several."""
+    called: str = ""
+    """By its user, if at all."""
+
+    @property
+    def title(self) -> str:
+        """What it, or they, are called."""
+        return self.called or words.any_of(self.parts, "and") or self.path.resolve().name
 
     @property
     def seeds(self) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
@@ -74,6 +74,15 @@ def standing_of(folder: Folder) -> Standing:
 def warnings_of(folder: Folder, *, is_followed: bool = False) -> list[Warned]:
     """What keeps a folder from being whole; a page that follows a sweep says that it runs."""
     return list(_warnings(folder, is_followed or is_at_work(folder.path), is_followed))
+
+
+def warnings_of_each(folders: Mapping[str, Folder]) -> list[Warned]:
+    """The same of several folders, by their names."""
+    return [
+        Warned(f"{name}: {text}", call)
+        for name, folder in folders.items()
+        for text, call in warnings_of(folder)
+    ]
 
 
 def _warnings(folder: Folder, is_running: bool, is_followed: bool) -> Iterator[Warned]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from simmpp.report.page.figures import accuracy, bar_figures, paper, profit_figures
+from simmpp.report.page.figures import accuracy, bar_figures, folder_figures, paper, profit_figures
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
 from simmpp.sweeps.winners.points import Points
 
+OVER = "A line is a folder, a panel a dataflow. Click a point to see it in depth."
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
 
 
@@ -30,6 +31,10 @@ class FigureGroup:
 
 FIGURE_GROUPS = (
     FigureGroup("paper", "The paper's figures", CLICKING, paper.STEMS, paper.paper_figures),
+    FigureGroup(
+        *("folders", "Folders over each other", OVER, folder_figures.STEMS),
+        lambda _, points: folder_figures.folder_figures(points),
+    ),
     FigureGroup(
         *("curves", "Curves", CLICKING, profit_figures.STEMS),
         lambda _, points: profit_figures.profit_figures(ProfitData(points)),
