@@ -54,7 +54,8 @@ class Folder:
     @property
     def title(self) -> str:
         """What it, or they, are called."""
-        return self.called or words.any_of(self.parts, "and") or self.path.resolve().name
+        joint = words.any_of(self.parts, "and") if self.parts else ""
+        return self.called or joint or self.path.resolve().name
 
     @property
     def seeds(self) -> int:
