@@ -58,7 +58,7 @@ def sweep_command(
     # Not at the top: the server of the workers and this process load numba and the rest at once.
     from simmpp.commands.parts.progress import progress_of_sweep
     from simmpp.commands.parts.sweep_result import print_result
-    from simmpp.commands.parts.terminal import announce_compilation, go_on, notice
+    from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say
     from simmpp.commands.reading import print_readings_of_sweep
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
@@ -82,6 +82,6 @@ def sweep_command(
     if code:
         notice(f"to try again: {call}")
     print_readings_of_sweep(config)
-    click.echo()
+    say()
     go_on("report", out)
     sys.exit(code)

@@ -8,12 +8,12 @@ import click
 import numpy as np
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.inputs import config_of
 from simmpp.commands.parts.tables import table
 from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
 from simmpp.commands.parts.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
-from simmpp.config.config import config_from_mapping, load_config
 from simmpp.workload.describe import object_uses, rays_by_depth, rays_by_kind
 from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
 from simmpp.workload.exchange.exchange import export_workload
@@ -48,11 +48,7 @@ def workload_command(
     if export and not is_workload(export.name):
         expected = f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}"
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
-    if spec.lower().endswith((".yaml", ".yml")):
-        config = load_config(spec, overrides)
-    else:
-        config = config_from_mapping({"scene": spec}, overrides)
-    rays = workload(config)
+    rays = workload(config_of(spec, overrides))
     if export:
         export_workload(rays, export)
     _list(rays, None if all_objects else OBJECTS_SHOWN)

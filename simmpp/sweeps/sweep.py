@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from itertools import chain
 from pathlib import Path
 from types import NoneType
@@ -198,13 +198,14 @@ def run_pending(
 def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher) -> None:
     """Bring the workloads that are needed into the cache, from where workers share them."""
     scenes = {planned.task.digest: planned.scene for planned in plan.points}
+    say = cache(watcher.notice)  # once, what holds for each picture of a scene
     first_tasks: dict[str, Task] = {}
     for task in tasks:
         first_tasks.setdefault(task.digest, task)
     for digest, task in first_tasks.items():
         began_s = time.perf_counter()
         progress = partial(watcher.tracing, scenes[digest])
-        workload = cache_workload(task.config, digest, progress=progress, notice=watcher.notice)
+        workload = cache_workload(task.config, digest, progress=progress, notice=say)
         if workload is not None:
             keep_workload(workload)
             results.add_trace(digest, time.perf_counter() - began_s)

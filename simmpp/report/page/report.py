@@ -142,7 +142,7 @@ def _verdicts(folder: Folder) -> str:
 
 def _sections(report: Report, others: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     claims = [("claims", "Claims")] if report.folder.claims else []  # what a reproduction is for
-    depth = [("point", "One point")] if any(report.points.runs) else []
+    depth = [("point", "One point"), ("rows", "All points")] if any(report.points.runs) else []
     groups = [(group.id, group.name) for group in report.groups]
     return [*claims, ("summary", "Summary"), *groups, *depth, *others, ("made", "How it was made")]
 
