@@ -8,6 +8,8 @@ from functools import cache
 from statistics import fmean
 from typing import NamedTuple
 
+PLAIN = 0.95
+"""Confidence, where the number of draws was not chosen by their values."""
 MOST_LOGARITHM = 700.0
 """Few draws far apart have an end beyond what a float holds."""
 
@@ -25,7 +27,7 @@ class MeanInterval(NamedTuple):
         return cls(mean, math.nan, math.nan)
 
 
-def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, float] | None:
+def interval(values: Sequence[float], confidence: float = PLAIN) -> tuple[float, float] | None:
     """The confidence interval of the mean of independent draws; None if they can't tell."""
     n, mean = len(values), fmean(values)
     if n < 2 or not math.isfinite(mean):
@@ -34,7 +36,7 @@ def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, 
     return mean - half, mean + half
 
 
-def of_logarithms(values: Sequence[float], confidence: float = 0.95) -> MeanInterval:
+def of_logarithms(values: Sequence[float], confidence: float = PLAIN) -> MeanInterval:
     """Geometric mean and interval of positive draws: those of their logarithms.
 
     Ends are positive, and those of 1 / values are 1 / the ends. A draw of 0 or infinity makes the

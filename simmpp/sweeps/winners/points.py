@@ -15,6 +15,7 @@ from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CLASSICAL, REFERENCE
 from simmpp.run import words
 from simmpp.run.rows import Seeds, by_place, finished, pairs
+from simmpp.sweeps.intervals import PLAIN
 from simmpp.sweeps.profits import MEASURES, profit_rows, profits_in_order
 
 KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
@@ -40,7 +41,7 @@ class Points:
     further: tuple[str, ...]
     labels: Mapping[str, str] = field(default_factory=dict)
     """Policies by label, as far as known."""
-    confidence: float = 0.95
+    confidence: float = PLAIN
     """Of the quantiles of intervals, which are of 95 % however seeds were chosen."""
 
     def name(self, number: int) -> str:
@@ -98,6 +99,11 @@ class Points:
             keys = self._keys(place), self._held[place[0]], self._simulations(place)
             found.setdefault(keys, place)
         return list(found.values())
+
+    @cached_property
+    def repeated(self) -> frozenset[int]:
+        """Points of places that are the simulations of an earlier one."""
+        return frozenset(range(len(self.profits))) - frozenset(chain(*self.cases))
 
     def held(self, number: int) -> Any:
         """Where a point lies along x: the share of the objects that PEs of its place really hold.
@@ -180,7 +186,7 @@ def points_of(
     further: tuple[str, ...],
     known: Sequence[Row] = (),
     labels: Mapping[str, str] = NO_LABELS,
-    confidence: float = 0.95,
+    confidence: float = PLAIN,
 ) -> Points:
     """Put the rows of each point together; ``labels`` name the policy of each label.
 

@@ -12,7 +12,7 @@ from simmpp.plot.curves import LOG_MARGIN, PERCENT, Curve, Panel, Scale, Spread
 from simmpp.report.page import scales
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
 from simmpp.report.page.figures.figure import Figure, slug, styles_of
-from simmpp.report.page.figures.measures import ALL, unit_of
+from simmpp.report.page.measures import ALL, unit_of
 from simmpp.run import words
 from simmpp.sweeps.winners.points import Points, varying_axes
 
@@ -113,9 +113,21 @@ def spread_note(data: ProfitData, arrangement: Arrangement) -> str:
 
 def _own_objects(data: ProfitData) -> str:
     """What must be said of x where it is less than PEs own."""
-    fractions = [(row["fraction"], row["processors"]) for row in data.rows]
-    is_less = any(x != "" and x * nb < 1 for x, nb in fractions)
-    return "; PEs hold at least their own objects, however small x" if is_less else ""
+    points, rows = data.points, data.points.profits
+    less = [n for n, row in enumerate(rows) if row["fraction"] != "" and _is_less(row)]
+    notes = []
+    if any(points.held(n) != rows[n]["fraction"] for n in less):
+        notes.append("where PEs own more than x, points lie at what they hold")
+    if any(points.held(n) == rows[n]["fraction"] for n in less):
+        notes.append(
+            "PEs hold at least what they own: below that, x is no more than room for fetched objects"
+        )
+    return "".join(f"; {note}" for note in notes)
+
+
+def _is_less(row: Row) -> bool:
+    """Asked for fewer objects than PEs own."""
+    return bool(row["fraction"] * row["processors"] < 1)
 
 
 def _panels(

@@ -19,8 +19,8 @@ from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.figures.bar_figures import bar_figures
 from simmpp.report.page.figures.figure import Figure
-from simmpp.report.page.figures.measures import ALL
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
+from simmpp.report.page.measures import ALL
 from simmpp.sweeps.winners.points import ACCOUNTS, KINDS, Points, points_of
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
@@ -108,7 +108,7 @@ def test_bars_are_the_accounts_and_messages_of_the_rows(rows: list[Row]) -> None
                 assert panel.parts[name][bar] == fmean(r[column] for r in points.runs[number])
     for figure in (accounts, messages):
         shown = sorted(number for panel in panels([figure]) for number in panel.rows)
-        assert shown == [n for n, runs in enumerate(points.runs) if runs]
+        assert shown == [n for n, r in enumerate(points.runs) if r and n not in points.repeated]
 
 
 @few
@@ -189,6 +189,17 @@ def test_bars_of_policies_come_in_the_order_of_their_colours() -> None:
         "concurrent dataflow",
         "replicated scene",
     ]
+
+
+def test_bars_of_the_same_simulations_are_one() -> None:
+    cells = {"processors": 4, "effective_fraction": 0.25}
+    rows = [
+        row(p, fraction=x, makespan_ps=5, **cells) for p in ("object", "ray") for x in (0.05, 0.1)
+    ]
+    points = points_of([*rows, *sweep(("object", "ray"), 1, processors=[4], fraction=[0.5])], ())
+    for figure in bar_figures(points):
+        for panel in panels([figure]):
+            assert panel.x.names == ("25", "50")
 
 
 def test_plotly_reads_html_so_labels_are_escaped() -> None:

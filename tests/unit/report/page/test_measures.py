@@ -10,8 +10,8 @@ from sweep_rows import row, sweep, timed
 
 from simmpp.common.files import Row
 from simmpp.plot.curves import Panel, Spread
-from simmpp.report.page.figures.measures import ALL
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
+from simmpp.report.page.measures import ALL
 from simmpp.sweeps.stopping import CORRECTED
 from simmpp.sweeps.winners.points import Points, points_of, points_of_profits
 
