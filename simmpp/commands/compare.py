@@ -33,12 +33,12 @@ SHOWN = 25
 def compare_command(
     before: GivenFolder, after: GivenFolder, others: tuple[GivenFolder, ...], out: Path | None
 ) -> None:
-    """Compare the rows of two folders, point by point, or of more with the first.
+    """Compare the rows of two folders, point by point.
 
-    A folder may be given as NAME=DIR, which is what tables and page call it. Seeds that both have
-    are compared one by one; a difference is sure if it lies beyond the 95 % interval of their
-    ratios. Always exits with 0 (2 for what can't be read): for a verdict in continuous integration
-    there is check.
+    More folders are compared with the first, one by one; NAME=DIR is what tables and page call a
+    folder. Seeds that both have are compared one by one; a difference is sure if it lies beyond the
+    95 % interval of their ratios. Always exits with 0 (2 for what can't be read): for a verdict in
+    continuous integration there is check.
     """
     options.writable(out, "--out", ".html")
     paths = _named([before, after, *others])
