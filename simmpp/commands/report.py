@@ -82,7 +82,8 @@ def report_command(
 def _read(paths: Mapping[str, Path], called: str, at: Path) -> Folder:
     """The folder, or all of them together as one that lies where their page does."""
     if len(paths) == 1:
-        return replace(read_folder(*paths.values()), called=called)
+        (path,) = paths.values()
+        return replace(read_folder(path), called=called)
     return together({name: read_folder(path) for name, path in paths.items()}, at)
 
 

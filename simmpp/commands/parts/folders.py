@@ -26,10 +26,8 @@ class GivenFolder(NamedTuple):
 class FolderArgument(NamedPath):
     """A folder, with or without a name; one that is there is taken as it is, equals sign or not."""
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> GivenFolder:
-        """Name and path."""
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A GivenFolder."""
         name, equals, path = str(value).partition("=")
         if not equals or Path(value).exists():
             return GivenFolder("", super().convert(value, param, ctx))
