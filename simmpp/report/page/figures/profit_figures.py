@@ -120,7 +120,7 @@ def _own_objects(data: ProfitData) -> str:
         notes.append("where PEs own more than x, points lie at what they hold")
     if any(points.held(n) == rows[n]["fraction"] for n in less):
         notes.append(
-            "PEs hold at least what they own: below that, x is no more than room for fetched objects"
+            "PEs hold at least what they own: below that, x is only room for fetched objects"
         )
     return "".join(f"; {note}" for note in notes)
 
