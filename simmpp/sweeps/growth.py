@@ -11,13 +11,12 @@ import copy
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 from simmpp.config.axes import POINTS, SAME, Choice
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.provenance import difference
-from simmpp.sweeps.task import canonical
+from simmpp.sweeps.task import canonical, decides
 from simmpp.workload.picture import Picture
 
 GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
@@ -35,7 +34,7 @@ def meanings(
     points: Iterable[Choice],
 ) -> dict[str, list[Any]]:
     """What the names of policies, of scenes (with picture and digest) and of points stand for."""
-    named = [(f"policy {policy.title}", asdict(canonical(policy))) for policy in policies]
+    named = [(f"policy {policy.title}", decides(canonical(policy))) for policy in policies]
     named += [(f"point {p.columns[POINTS[:-1]]}", dict(p.assignments)) for p in points]
     names: dict[str, list[Any]] = {}
     for name, meaning in named:
