@@ -24,6 +24,8 @@ GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
 SWEPT, NAMES = "swept", "names"
 """Parts of an identity that grow: keys that are axes, and the meanings that each name has."""
 
+FORMAT = "format"
+"""The part that says how all others are written."""
 Identity = Mapping[str, Any]
 """What results are of, as JSON can hold it: versions, the configuration, and those two."""
 
@@ -49,6 +51,8 @@ def meanings(
 
 def conflict(there: Identity, now: Identity) -> str:
     """What keeps the results of two sweeps from lying in one folder; empty if nothing does."""
+    if there.get(FORMAT) != now.get(FORMAT):
+        return difference(*({FORMAT: identity.get(FORMAT)} for identity in (there, now)))
     swept = {*there.get(SWEPT, ()), *now.get(SWEPT, ())}
     return difference(_outside(there, swept), _outside(now, swept)) or _renamed(
         there.get(NAMES, {}), now.get(NAMES, {})

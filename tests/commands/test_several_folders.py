@@ -11,6 +11,7 @@ from sweep_rows import failed, row, sweep, written
 
 from simmpp.cli import main
 from simmpp.common.files import Row
+from simmpp.common.folders import BENCH, claimed, held, note_call
 
 
 @pytest.fixture(autouse=True)
@@ -169,3 +170,15 @@ def test_what_is_unfinished_or_failed_says_so_by_its_name(command: str) -> None:
     assert "simmpp: half: 1 row failed: took too long\n" in told
     page = Path("page.html").read_text(encoding="utf-8")
     assert missing[0].upper() + missing[1:] in page
+
+
+def test_what_was_interrupted_before_there_were_rows_says_how_to_go_on() -> None:
+    with claimed(Path("d"), BENCH):
+        note_call(Path("d"), "simmpp bench c.yaml --out d")
+        Path("d/points.jsonl").write_text("{}\n")
+    code, told = run("report", "d")
+    assert code == 2
+    interrupted = "DIR: value 'd': interrupted, before there were rows"
+    assert told == f"simmpp: error: {interrupted}; to go on: simmpp bench c.yaml --out d\n"
+    with held(Path("d")):
+        assert "there are no rows yet: the command that works here" in run("report", "d")[1]
