@@ -52,7 +52,7 @@ def meanings(
 def conflict(there: Identity, now: Identity) -> str:
     """What keeps the results of two sweeps from lying in one folder; empty if nothing does."""
     if there.get(FORMAT) != now.get(FORMAT):
-        return difference(*({FORMAT: identity.get(FORMAT)} for identity in (there, now)))
+        return difference({FORMAT: there.get(FORMAT)}, {FORMAT: now.get(FORMAT)})
     swept = {*there.get(SWEPT, ()), *now.get(SWEPT, ())}
     return difference(_outside(there, swept), _outside(now, swept)) or _renamed(
         there.get(NAMES, {}), now.get(NAMES, {})
