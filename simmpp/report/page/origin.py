@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from simmpp.common.units import counted
 from simmpp.report.page.folder import Folder, number_of
+from simmpp.report.page.settings import settings_of
 from simmpp.run import words
-
-UNSAID = ("sweep", "check", "seeds", "policy")
-"""Keys of a configuration that the figures show."""
 
 
 def facts(folder: Folder) -> list[str]:
@@ -33,7 +29,7 @@ def origin(folder: Folder) -> list[tuple[str, str]]:
     """Names and values, as text; of several folders those that differ for each."""
     if folder.parts:
         return list(_of_each({name: dict(origin(part)) for name, part in folder.parts.items()}))
-    return [*_settings(folder), *_machines(folder), *_versions(folder), *_times(folder)]
+    return [*settings_of(folder.record), *_machines(folder), *_versions(folder), *_times(folder)]
 
 
 def _of_each(origins: Mapping[str, Mapping[str, str]]) -> Iterator[tuple[str, str]]:
@@ -43,25 +39,6 @@ def _of_each(origins: Mapping[str, Mapping[str, str]]) -> Iterator[tuple[str, st
             yield key, next(iter(values.values()))
         else:
             yield from ((f"{key}, {name}", value) for name, value in values.items())
-
-
-def _settings(folder: Folder) -> Iterator[tuple[str, str]]:
-    config = folder.record.get("config")
-    if isinstance(config, dict):
-        for key, value in config.items():
-            if key not in UNSAID and value not in (None, {}, []):
-                yield key, _text(value)
-    if overrides := folder.record.get("set"):
-        yield "set", _text(overrides)
-
-
-def _text(value: Any) -> str:
-    """Short and readable: mappings as ``key value``, without what is not given."""
-    if isinstance(value, dict):
-        return ", ".join(f"{k}: {_text(v)}" for k, v in value.items() if v not in (None, {}))
-    if isinstance(value, list):
-        return ", ".join(map(_text, value))
-    return value if isinstance(value, str) else json.dumps(value)
 
 
 def _machines(folder: Folder) -> Iterator[tuple[str, str]]:
