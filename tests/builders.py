@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
+from simmpp.machine.machine import (
+    TOPOLOGY_NAMES,
+    TORUS,
+    UNLIMITED,
+    CopyCost,
+    Level,
+    Machine,
+    TestCost,
+)
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
@@ -194,6 +202,44 @@ def random_machine(rng: np.random.Generator) -> Machine:
     )
 
 
+def on_some_network(machine: Machine, seed: int) -> Machine:
+    """A torus as it is, or its PEs joined otherwise at costs of the same kind.
+
+    Draws from a stream of its own: what else is drawn of the seed stays what it is.
+    """
+    rng = np.random.default_rng((seed, 18))
+    topology = _pick(rng, TOPOLOGY_NAMES)
+    machine = replace(machine, port_gap_ps=int(_pick(rng, (0, machine.latency_ps))))
+    if topology == TORUS:
+        return machine
+    machine = replace(machine, topology=topology, shape=(machine.processors, 1, 1))
+    return replace(machine, levels=_levels(rng, machine))
+
+
+def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
+    """1 to 3, of the machine's own times and bandwidths so that there are ties."""
+    times = (0, machine.latency_ps, machine.hop_latency_ps, machine.send_startup_ps)
+    rates = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    return tuple(
+        Level(
+            name=name,
+            size=int(rng.integers(1, 4)),
+            latency_ps=int(_pick(rng, times)),
+            bytes_per_s=int(_pick(rng, rates)),
+            gap_ps=int(_pick(rng, times)),
+            ports=1 if name == "inner" else int(rng.integers(1, 4)),
+        )
+        for name in ("inner", "middle")[: int(rng.integers(0, 3))]
+    ) + (
+        Level(
+            name="outer",
+            latency_ps=int(_pick(rng, times)),
+            bytes_per_s=int(_pick(rng, rates)),
+            gap_ps=int(_pick(rng, times)),
+        ),
+    )
+
+
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
     """Any owners and pixels; a third of the cases have no replicas."""
     owners = rng.integers(0, processors, workload.n_objects).tolist()
@@ -244,7 +290,13 @@ def random_case(seed: int) -> Case:
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
+    machine = on_some_network(machine, seed)
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def on_torus(case: Case) -> Case:
+    """The case on a torus, if need be a ring."""
+    return replace(case, machine=replace(case.machine, topology=TORUS, levels=()))
 
 
 def cases() -> st.SearchStrategy[Case]:

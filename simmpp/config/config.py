@@ -21,7 +21,7 @@ from simmpp.config.overrides import Places, override, set_key
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.machine import Machine
-from simmpp.machine.presets import machine, torus_shape
+from simmpp.machine.presets import machine
 from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
@@ -177,9 +177,10 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     ]
     point = changed(config, sorted(assignments, key=lambda assigned: assigned[0].count(".")))
     try:
-        torus_shape(point.processors, point.settings.machine.shape)
+        point.machine_for(point.processors)
     except ConfigError as error:
-        raise misplaced(("machine", "shape"), error.problem, point.places) from None
+        key = ("machine", *error.where.split("."))
+        raise misplaced(key, error.problem, point.places) from None
     return point
 
 

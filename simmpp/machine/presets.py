@@ -17,7 +17,9 @@ from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole, require_word
 from simmpp.common.yamlfile import Document, read_yaml
 from simmpp.machine.constants import Constants, machine_of
-from simmpp.machine.machine import MOST_PROCESSORS, Machine, Shape, is_shape
+from simmpp.machine.layers import Layers
+from simmpp.machine.machine import MOST_PROCESSORS, TORUS, Machine, Shape, is_shape
+from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import default_shape
 
 _FOLDER = files("simmpp") / "machine" / "presets"
@@ -100,30 +102,32 @@ def machine(
     ``overrides`` has the keys of a configuration's ``machine``: ``{"send_startup": "5 us"}``;
     ``costs`` are some constants that come before them, with sources of their own. The torus is
     ``shape``, else the overrides' shape, else the most cubic one.
-    Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
+    Raises ConfigError for a wrong constant or a network that doesn't hold ``processors`` PEs.
     """
     require_word("preset", preset, preset_names())
     require_kind("overrides", overrides, Mapping, Constants, NoneType)
     if not isinstance(overrides, Constants):
         overrides = structure(Constants, dict(overrides or {}), {})
-    chosen = load_preset(preset)
-    changed = overrides.flat()
-    numbers: dict[str, int] = {}
-    sources: dict[str, str] = {}
-    for layer in (chosen, costs) if costs else (chosen,):
-        numbers |= layer.constants.flat()
-        sources |= {key: layer.source(key) for key in layer.constants.flat()}
-    return machine_of(
-        numbers | changed,
+    layers = Layers()
+    for layer in (load_preset(preset), costs):
+        if layer is not None:
+            layers.put(layer.constants, layer.source)
+    layers.put(overrides, lambda key: OVERRIDDEN)
+    layers.refuse_strangers(overrides)
+    made = machine_of(
+        layers.numbers,
         name=preset,
-        shape=torus_shape(processors, overrides.shape if shape is None else shape),
-        **overrides.words(),
-        sources=sources | dict.fromkeys(changed, OVERRIDDEN),
+        shape=_shape(processors, overrides.shape if shape is None else shape, layers.words),
+        levels=layers.levels(),
+        **layers.words,
+        sources=layers.sources,
     )
+    topology_of(made)  # refuses what can't be
+    return made
 
 
-def torus_shape(processors: int, shape: Shape | None) -> Shape:
-    """``shape`` if it holds ``processors`` PEs; the most cubic torus where it is None.
+def _shape(processors: int, shape: Shape | None, words: Mapping[str, str]) -> Shape:
+    """``shape`` if it holds ``processors`` PEs, the most cubic torus where it is None.
 
     Raises ConfigError otherwise.
     """
@@ -132,4 +136,6 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
         value = list(shape) if isinstance(shape, tuple) else shape
         expected = f"three integers whose product is processors = {processors}"
         raise ConfigError(f"value {shown(value)}: expected {expected}", where="shape")
+    if words["topology"] != TORUS:
+        return processors, 1, 1  # all in a row: a shape is the torus' alone
     return shape or default_shape(processors)

@@ -1,4 +1,4 @@
-"""What a message or a test costs, by fractions and by walking over the links of the torus."""
+"""What a copy or a test costs, by fractions; how far PEs are, by walking over the torus."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
+Stage = tuple[tuple[str, ...], int, int]
+"""A link or port by its name; how long a message keeps it; when its head is at the next one, or the
+message is there: after how long."""
 
 
 def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
@@ -59,15 +62,3 @@ def hops_from(shape: tuple[int, int, int], pe: int) -> dict[int, int]:
                 hops[there] = hops[here] + 1
                 queue.append(there)
     return hops
-
-
-def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:
-    """Time from departure to arrival on an empty network."""
-    limits = [machine.link_bytes_per_s, machine.injection_bytes_per_s]
-    slowest = min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
-    hops = hops_from(machine.shape, source)[destination]
-    return (
-        machine.latency_ps
-        + hops * machine.hop_latency_ps
-        + transfer_ps(payload_bytes + machine.header_bytes, slowest)
-    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from oracles.costs import hops_from
+from oracles.network import distance
 from oracles.rules import View, numbers
 from oracles.state import PE, Part
 from oracles.world import World
@@ -77,7 +77,7 @@ class Dispatch(World):
 
     def view(self, pe: PE, owner: int, **seen: int | Fraction) -> View:
         """What a rule of this PE sees when it decides about something that another one owns."""
-        hops = hops_from(self.machine.shape, pe.number)[owner] if self.rules.knows_hops else 0
+        hops = distance(self.machine, pe.number, owner) if self.rules.knows_hops else 0
         own = numbers(self.policy, self.workload.n_primaries, self.nb)
         return View(load=pe.load, hops=hops, **own, **seen)
 
