@@ -19,14 +19,14 @@ from simmpp.engine.result import Result
 from simmpp.plot.curves import PERCENT, Bars, Panel, Scale
 from simmpp.plot.matplotlib_panels import Drawing, drawing
 from simmpp.policy.parameters import REFERENCE
-from simmpp.report.page import words
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.figures.stills import titled
 from simmpp.report.page.folder import further_of
-from simmpp.report.page.points import ACCOUNTS, KINDS, points_of
 from simmpp.report.page.report import PAGE
+from simmpp.run import words
 from simmpp.sweeps.profits import MEASURES
 from simmpp.sweeps.sweep import SweepResult
+from simmpp.sweeps.winners.points import ACCOUNTS, KINDS, points_of
 
 MOST_BARS, MOST_NAMES = 64, 8
 """Bars of a result, each of as many PEs as it takes, and how many of them have their names."""

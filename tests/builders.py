@@ -220,23 +220,17 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
     """1 to 3, of the machine's own times and bandwidths so that there are ties."""
     times = (0, machine.latency_ps, machine.hop_latency_ps, machine.send_startup_ps)
     rates = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    inside = range(int(rng.integers(0, 3)))
     return tuple(
         Level(
-            name=name,
-            size=int(rng.integers(1, 4)),
+            name=f"level {n}",
+            size=int(rng.integers(1, 4)) if n in inside else 0,
             latency_ps=int(_pick(rng, times)),
             bytes_per_s=int(_pick(rng, rates)),
             gap_ps=int(_pick(rng, times)),
-            ports=1 if name == "inner" else int(rng.integers(1, 4)),
+            ports=int(rng.integers(1, 4)) if n > 0 else 1,
         )
-        for name in ("inner", "middle")[: int(rng.integers(0, 3))]
-    ) + (
-        Level(
-            name="outer",
-            latency_ps=int(_pick(rng, times)),
-            bytes_per_s=int(_pick(rng, rates)),
-            gap_ps=int(_pick(rng, times)),
-        ),
+        for n in (*inside, len(inside))
     )
 
 

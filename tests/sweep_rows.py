@@ -43,6 +43,11 @@ def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
     } | cells
 
 
+def timed(policy: str, *makespans_ps: int, **cells: object) -> list[Row]:
+    """Rows of one policy, one a seed, with these makespans."""
+    return [row(policy, seed, makespan_ps=t, **cells) for seed, t in enumerate(makespans_ps)]
+
+
 def failed(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
     """A row with an error in place of numbers."""
     made = row(policy, seed, **cells)

@@ -127,10 +127,10 @@ def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
     def compile_now(function: Callable[..., object]) -> object:
         with _kept_for(function) as kept, Uninterrupted():
             try:
-                return numba.cfunc(signature, cache=kept)(function)
+                return numba.cfunc(signature, cache=kept, boundscheck=True)(function)
             except OSError as error:
                 _tell_of_cache(error.strerror or str(error))
-                return numba.cfunc(signature)(function)
+                return numba.cfunc(signature, boundscheck=True)(function)
 
     return compile_now
 

@@ -20,8 +20,9 @@ from simmpp.config.defaults import READING, filled, lines_used
 from simmpp.config.overrides import Places, override, set_key
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
-from simmpp.machine.machine import Machine
-from simmpp.machine.presets import machine
+from simmpp.machine.machine import TORUS, Machine
+from simmpp.machine.presets import machine as machine_of
+from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
@@ -94,7 +95,7 @@ class Config:
         """
         own = self.settings.machine
         costs = self.reading.costs.get(own.preset)
-        return machine(own.preset, own, processors, costs=costs)
+        return machine_of(own.preset, own, processors, costs=costs)
 
     @property
     def lines_of_reading(self) -> list[Line]:
@@ -177,10 +178,14 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     ]
     point = changed(config, sorted(assignments, key=lambda assigned: assigned[0].count(".")))
     try:
-        point.machine_for(point.processors)
+        machine = point.machine_for(point.processors)
     except ConfigError as error:
         key = ("machine", *error.where.split("."))
         raise misplaced(key, error.problem, point.places) from None
+    method = point.settings.method
+    if METHODS[method].knows_torus_alone and machine.topology != TORUS:
+        problem = f"value {method!r}: expected {SIMULATE} where the topology is {machine.topology}"
+        raise misplaced(("method",), problem, point.places)
     return point
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
+from simmpp.common.randomness import key
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
 from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PACKING, PIGGYBACK, Run
@@ -16,15 +17,22 @@ from simmpp.engine.pe.step import note_peaks
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
-from simmpp.engine.residency import Arrays, resident_arrays, resident_bytes, row_bytes
+from simmpp.engine.residency import (
+    Arrays,
+    holder_arrays,
+    resident_arrays,
+    resident_bytes,
+    row_bytes,
+)
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
-from simmpp.policy.compiled_rules import NUMBERS, VIEW, address_of
-from simmpp.policy.parameters import POLICIES, PolicyParameters
+from simmpp.policy.hooks import NUMBERS, VIEW, address_of, groups_read, knows_loads, reads
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.policy import Policy
 from simmpp.workload.workload import Workload
 
 
@@ -35,14 +43,17 @@ def new_state(
     parameters: PolicyParameters,
     *,
     ready_order: str,
+    seed: int = 0,
     recording: Recording = NOTHING,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
-    everything = POLICIES[parameters.name].all_resident
+    policy = parameters.rules
+    everything = policy.all_resident
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays["rule_view"] = view = _rule_view(workload, placement, parameters)
+    arrays |= holder_arrays(workload, placement, wanted=reads(policy, "holders"))
+    arrays["policy_views"] = views = _policy_views(workload, placement, parameters)
     flags = {
         "depth_first": ready_order == "depth-first",
         "record_tests": recording.tests,
@@ -53,7 +64,8 @@ def new_state(
     }
     scalars = {name: getattr(machine, name) for name in MACHINE}
     scalars |= _of_the_run(workload, machine, placement)
-    scalars |= _of_the_policy(parameters, view)
+    scalars |= _of_the_policy(parameters, views)
+    scalars["random_key"] = key(seed, "policy")
     state = State(arrays, scalars | flags, recording.sink)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state.runs, placement.pixel_pes)
@@ -104,14 +116,22 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
     }
 
 
-def _rule_view(
+def _policy_views(
     workload: Workload, placement: Placement, parameters: PolicyParameters
 ) -> NDArray[np.void]:
-    """(1,) VIEW with the policy's numbers in it."""
-    view = np.zeros(1, VIEW)
+    """(1,) VIEW with what stays as it is in it; (nb,) for a policy with a memory."""
+    nb = placement.processors
+    views = np.zeros(nb if _remembers(parameters.rules) else 1, VIEW)
+    views["nb"], views["initial_load"] = nb, workload.n_primaries // nb
     for name in NUMBERS:
-        view[name] = _in_rays(getattr(parameters, name), workload, placement)
-    return view
+        views[name] = _in_rays(getattr(parameters, name), workload, placement)
+    own = parameters.numbers
+    views["parameter"][:, : len(own)] = own
+    return views
+
+
+def _remembers(policy: Policy) -> bool:
+    return reads(policy, "memory")
 
 
 def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -> int:
@@ -135,23 +155,29 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
     }
 
 
-def _of_the_policy(parameters: PolicyParameters, view: NDArray[np.void]) -> dict[str, int]:
-    policy = POLICIES[parameters.name]
+def _of_the_policy(parameters: PolicyParameters, views: NDArray[np.void]) -> dict[str, int]:
+    policy = parameters.rules
     load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
-    listens = policy.knows_loads and load_info == PIGGYBACK
+    listens = knows_loads(policy) and load_info == PIGGYBACK
+    names = tuple(policy.parameters)
 
     def count(of: int | str) -> int:
-        return of if isinstance(of, int) else int(view[of][0])
+        """A number, or the number so called."""
+        if isinstance(of, str):
+            of = parameters.numbers[names.index(of)] if of in names else int(views[of][0])
+        return max(of, 1)
 
     return {
         "all_resident": policy.all_resident,
         "sends": policy.sends,
         "asks": policy.asks,
-        "may_send": address_of(policy.may_send),
-        "may_ask": address_of(policy.may_ask),
-        "send_from": count(policy.send_from),
-        "ask_from": count(policy.ask_from),
-        "knows_hops": policy.knows_hops,
+        "send": address_of(policy.send, names),
+        "ask": address_of(policy.ask, names),
+        "send_from": count(policy.batch),
+        "ask_from": count(policy.ask_at_least),
+        "send_reads": groups_read(policy.send),
+        "ask_reads": groups_read(policy.ask),
+        "remembers": _remembers(policy),
         "load_info": load_info,
         "listens": listens,
         "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,

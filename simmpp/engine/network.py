@@ -24,9 +24,14 @@ def depart(s: Run, m: Row) -> None:
     if s.contends:
         inject(s, m)
     else:
-        rate = bytes_per_s(topology(s), m.source, m.destination)
-        head_ps = m.depart_ps + latency_ps(topology(s), m.source, m.destination)
-        m.arrival_ps = head_ps + transfer_ps(n_bytes, rate)
+        m.arrival_ps = m.depart_ps + flight_ps(s, m.source, m.destination, n_bytes)
+
+
+@kernel
+def flight_ps(s: Run, source: int, destination: int, n_bytes: int) -> int:
+    """How long a message of that many bytes, with its header, travels if nothing is in its way."""
+    rate = bytes_per_s(topology(s), source, destination)
+    return latency_ps(topology(s), source, destination) + transfer_ps(n_bytes, rate)
 
 
 @kernel

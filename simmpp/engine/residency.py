@@ -43,6 +43,21 @@ def resident_arrays(workload: Workload, placement: Placement, everything: bool) 
     return nothing | {"replica_offsets": placement.replica_offsets, "replica_objects": ids}
 
 
+def holder_arrays(workload: Workload, placement: Placement, *, wanted: bool) -> Arrays:
+    """The arrays ``holder_offsets`` and ``holder_pes`` of a run; empty if not wanted."""
+    if not wanted:
+        return {"holder_offsets": np.zeros(0, np.int64), "holder_pes": np.zeros(0, np.int32)}
+    nb, n_objects = placement.processors, workload.n_objects
+    replicas = np.repeat(np.arange(nb, dtype=np.int32), np.diff(placement.replica_offsets))
+    objects = np.concatenate([np.arange(n_objects), placement.replica_objects])
+    holders = np.concatenate([placement.owners, replicas]).astype(np.int32)
+    counts = np.bincount(objects, minlength=n_objects)
+    return {
+        "holder_offsets": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        "holder_pes": holders[np.lexsort((holders, objects))],
+    }
+
+
 def resident_bytes(workload: Workload, placement: Placement, everything: bool) -> NDArray[np.int64]:
     """Bytes of the objects resident on each PE: (nb,) int64."""
     if everything:

@@ -16,7 +16,7 @@ from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import POLICIES, PolicyParameters, policy_of
+from simmpp.policy.parameters import PolicyParameters, policy_of
 from simmpp.workload.workload import Workload
 
 ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {
@@ -35,24 +35,32 @@ def simulate(
     *,
     engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
+    seed: int = 0,
     record: Recording = NOTHING,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Replay a workload on a simulated machine.
 
-    A policy's name stands for it with its defaults. ``record`` says what is noted besides the
+    A policy's name stands for it with its defaults. ``seed`` is that of the random numbers that a
+    policy may be given. ``record`` says what is noted besides the
     totals. ``progress`` is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
     are left and nothing is scheduled (a bug, or a policy that starves).
     """
     policy = policy_of(policy)
-    _check(workload, machine, placement, policy, engine, ready_order)
+    _check(workload, machine, placement, engine, ready_order)
     require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
     state = new_state(
-        workload, machine, placement, policy, ready_order=ready_order, recording=recording
+        workload,
+        machine,
+        placement,
+        policy,
+        ready_order=ready_order,
+        seed=seed,
+        recording=recording,
     )
     run = ENGINES[engine](state, progress)
     try:
@@ -68,14 +76,12 @@ def _check(
     workload: Workload,
     machine: Machine,
     placement: Placement,
-    policy: PolicyParameters,
     engine: str,
     ready_order: str,
 ) -> None:
     require_kind("workload", workload, Workload)
     require_kind("machine", machine, Machine)
     require_kind("placement", placement, Placement)
-    require_word("policy", policy.name, tuple(POLICIES))
     require_word("engine", engine, tuple(ENGINES))
     require_word("ready_order", ready_order, READY_ORDERS)
     check_fit(workload, machine, placement)

@@ -7,10 +7,13 @@ some that follow each other; the last one may have fewer.
 With contention a message leaves its PE and then each block that does not have both by one of that
 block's ports, and enters those of its destination likewise. A port serves whoever comes first, for
 the time of the message's bytes at the bandwidth of the port's own level, or for the level's gap if
-that is longer; the head goes on meanwhile. Between the last port out and the first one in the head takes the latency, and from the
-last port on the message arrives at the bandwidth of its level: alone, a message takes the same time
-with contention and without. Which port of a block is the PE's number within it modulo the ports, as
-of nodes with a network card for each accelerator.
+that is longer; the head goes on meanwhile. Between the last port out and the first one in the head
+takes the latency, and from the last port on the message arrives at the bandwidth of its own level:
+alone, a message takes the same time with contention and without. Which port of a block is the PE's
+number within it modulo the ports, as of nodes with a network card for each accelerator.
+
+Source: the nodes of Alps have four accelerators and four cards (CSCS, docs/alps/hardware.md); what
+lies outside of a block is a crossbar here, where adaptive routing would spread messages.
 """
 
 from __future__ import annotations
@@ -56,8 +59,9 @@ class Blocks:
         return cls(machine.processors, machine.levels)
 
     def __str__(self) -> str:
-        inside = [f"{level.size} to a {level.name}" for level in self.levels[:-1]]
-        return ", ".join([*inside, f"{self.n_blocks[-1]} on one {self.levels[-1].name}"])
+        sizes = [*(level.size for level in self.levels[:-1]), self.n_blocks[-1]]
+        named = zip(self.levels, sizes, strict=True)
+        return ", ".join(f"{level.name} of {size}" for level, size in named)
 
     @property
     def block_sizes(self) -> list[int]:
@@ -114,7 +118,8 @@ class Blocks:
 
 def _check(levels: tuple[Level, ...], processors: int) -> None:
     if not levels:
-        raise ConfigError("expected at least one level, such as {system: {latency: 1 us}}")
+        problem = "expected at least one level, such as {system: {latency: 1 us}}"
+        raise ConfigError(problem, where="levels")
     for level in levels[:-1]:
         if level.size < 1:
             problem = "missing key 'size': only the outermost level has all there are"

@@ -155,7 +155,7 @@ class Machine:
     quantum: Annotated[int, *integer(1, 2**31 - 1, "tests")]
     """Tests that a PE computes at most before it looks into its inbox."""
     topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
-    """How PEs are joined: the one that ``levels`` says where these are given, else the
+    """How PEs are joined: the one that `levels` says where these are given, else the
     preset's."""
     levels: Levels = ()
     """Blocks of PEs in larger blocks, the innermost first, each by a name of one's own."""

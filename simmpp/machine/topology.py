@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
+from simmpp.common.errors import ConfigError
 from simmpp.common.validate import require_word
 from simmpp.machine import levels, torus
 from simmpp.machine.machine import LEVELS, TORUS, Machine
@@ -69,6 +70,13 @@ def topology_of(machine: Machine) -> Topology:
     """
     require_word("topology", machine.topology, tuple(TOPOLOGIES))
     return TOPOLOGIES[machine.topology](machine)
+
+
+def require_torus(machine: Machine) -> None:
+    """Raise ConfigError for what the analytical model does not know."""
+    if machine.topology != TORUS:
+        problem = f"value {machine.topology!r}: expected {TORUS} for the paper's analytical model"
+        raise ConfigError(problem, where="machine.topology")
 
 
 def network_of(topology: Topology) -> Network:

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy, hook
 from simmpp.policy.view import View
 
 
-def to_the_less_loaded(view: View) -> bool:
-    """Send a full batch if my load is superior to a minimal load and to the owner's load."""
-    if view.waiting < view.batch and not view.nothing_else:
-        return False
-    return view.load > view.min_load and view.load > view.known_load
+@hook
+def to_the_less_loaded(v: View) -> int:
+    """Send all that waits if my load is superior to a minimal load and to the owner's load."""
+    return v.waiting if v.load > v.min_load and v.load > v.known_load else 0
 
 
-def when_sufficient(view: View) -> bool:
-    """Ask if the number of rays that need the object is sufficient, or there is nothing else."""
-    return view.waiting >= view.ask_at_least or view.nothing_else != 0
+@hook
+def when_sufficient(v: View) -> int:
+    """Ask: this is asked when a sufficient number of rays needs it, or nothing else is to do."""
+    return 1
 
 
-CONCURRENT_DATAFLOW = DataflowPolicy(
-    name="concurrent",
-    source="Nebel 1998, section 4.1",
-    may_send=to_the_less_loaded,
-    may_ask=when_sufficient,
-    send_from="batch",
-    ask_from="ask_at_least",
-    knows_loads=True,
+CONCURRENT_DATAFLOW = Policy(
+    "concurrent",
+    "Nebel 1998, section 4.1",
+    send=to_the_less_loaded,
+    ask=when_sufficient,
+    batch="batch",
+    ask_at_least="ask_at_least",
 )

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy, hook
 from simmpp.policy.view import View
 
 
-def at_once(view: View) -> bool:
+@hook
+def at_once(v: View) -> int:
     """Ask for every missing object as soon as one ray needs it."""
-    return True
+    return 1
 
 
-OBJECT_DATAFLOW = DataflowPolicy(
-    name="object",
-    source="Nebel 1998, section 2.1; Badouel & Priol 1990, Green & Paddon 1990",
-    may_ask=at_once,
+OBJECT_DATAFLOW = Policy(
+    "object",
+    "Nebel 1998, section 2.1; Badouel & Priol 1990, Green & Paddon 1990",
+    ask=at_once,
 )

@@ -1,4 +1,4 @@
-"""The policies, and what a user sets of one: its name and the numbers that its two rules read.
+"""The policies, and what a user sets of one: its name and the numbers that its hooks read.
 
 A further policy is a file like ``concurrent``, a line in POLICIES, and a field of PolicyParameters
 for each number of its own.
@@ -38,11 +38,11 @@ from simmpp.common.units import picoseconds, share, shown
 from simmpp.common.validate import MOST_COUNT, whole
 from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
 from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
+from simmpp.policy.policy import Packing, Policy
 from simmpp.policy.ray_dataflow import RAY_DATAFLOW
 from simmpp.policy.replicated import REPLICATED
-from simmpp.policy.rules import DataflowPolicy, Packing
 
-POLICIES: dict[str, DataflowPolicy] = {
+POLICIES: dict[str, Policy] = {
     "object": OBJECT_DATAFLOW,
     "ray": RAY_DATAFLOW,
     "concurrent": CONCURRENT_DATAFLOW,
@@ -167,6 +167,16 @@ class PolicyParameters:
             expected = f"{in_words(policy.packings)} for {policy.name}"
             raise mistake(f"value {shown(packing)}: expected {expected}")
         return packing
+
+    @property
+    def rules(self) -> Policy:
+        """The policy itself."""
+        return POLICIES[self.name]
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Its own numbers, in their order."""
+        return tuple(self.rules.parameters.values())
 
     @property
     def packs(self) -> bool:

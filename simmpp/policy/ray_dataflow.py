@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy, hook
 from simmpp.policy.view import View
 
 
-def in_batches(view: View) -> bool:
-    """Send every full batch, and all that waits when there is nothing else to do."""
-    return view.waiting >= view.batch or view.nothing_else != 0
+@hook
+def in_batches(v: View) -> int:
+    """Send all that waits: this is asked for full batches, or when nothing else is to do."""
+    return v.waiting
 
 
-RAY_DATAFLOW = DataflowPolicy(
-    name="ray",
-    source="Nebel 1998, sections 2.2 and 3.1 (rays are buffered, one message per processor)",
-    may_send=in_batches,
-    send_from="batch",
+RAY_DATAFLOW = Policy(
+    "ray",
+    "Nebel 1998, sections 2.2 and 3.1 (rays are buffered, one message per processor)",
+    send=in_batches,
+    batch="batch",
 )

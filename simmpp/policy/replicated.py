@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy
 
-REPLICATED = DataflowPolicy(
-    name="replicated",
-    source="Nebel 1998, section 2 (duplication of the whole scene on every processor)",
+REPLICATED = Policy(
+    "replicated",
+    "Nebel 1998, section 2 (duplication of the whole scene on every processor)",
     all_resident=True,
 )

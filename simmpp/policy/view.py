@@ -1,34 +1,85 @@
-"""What a rule sees: one record, which is filled before each question."""
+"""What a hook sees: one record, which is filled before each question."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import MutableSequence, Sequence
+from typing import TYPE_CHECKING
 
-from simmpp.common.compiled import kernel
-from simmpp.machine.topology import Network, hops
+WORDS = 8
+"""Numbers in ``parameter`` and in ``memory``."""
 
 
 class View:
     """What a PE may know when its policy decides; whole numbers (int64), in this order in memory.
 
-    Behind these come the policy's own numbers: every field of ``PolicyParameters`` that holds a
-    number, by its name (``view.batch``), a share of n0 / nb as the floor of that many rays. A
-    further input is a line here and its value in ``show``.
+    *The other* is, in ``send``, the PE that rays may go to; in ``ask``, the owner of the object. A
+    hook gets, of the fields below, those that it reads; what it does not read costs nothing. A
+    further field is a line at the end, its group in ``GROUPS`` if it has to be looked up, and its
+    value in ``engine.pe.showing``.
     """
 
+    now_ps: int
+    """The PE's clock, in picoseconds since the start."""
+    me: int
+    """The number of this PE, from 0."""
+    nb: int
+    """How many PEs there are."""
     load: int
     """Rays that this PE holds, ready or waiting."""
-    waiting: int
-    """Send: rays that wait for objects of the owner and may be sent. Ask: rays that wait for the
-    object and that no request covers."""
+    ready: int
+    """Those of them that are ready."""
+    held_bytes: int
+    """Bytes of the objects in its memory, resident and fetched."""
     nothing_else: int
-    """1 if no ray is ready and the inbox is empty, else 0."""
+    """1 if no ray was ready and the inbox empty when this dispatch began, else 0."""
+    initial_load: int
+    """Primary rays / nb, rounded down: what is known of a PE before it is heard."""
+    other: int
+    """The other PE."""
     known_load: int
-    """Send: load last heard of the owner; -1: not known (load_info none). Ask: -1."""
+    """Load last heard of the other; -1: not known (load_info none)."""
     age_ps: int
-    """Send: time since that was heard (since the start if never, 0 if exact). Ask: 0."""
+    """Time since that was heard (since the start if never, 0 if exact)."""
+    in_flight: int
+    """Rays sent to the other since its load was heard; 0 where loads are not in headers."""
     hops: int
-    """Links between this PE and the owner, for policies that say ``knows_hops``; else 0."""
+    """Links between this PE and the other."""
+    send_ps: int
+    """What sending costs this PE: ``send`` all waiting rays in one message, ``ask`` a request."""
+    receive_ps: int
+    """What receiving costs: ``send`` the other, for these rays; ``ask`` this PE, for the object."""
+    flight_ps: int
+    """Time in between without contention: ``send`` of the message; ``ask`` of the request, of its
+    answer, and what answering takes."""
+    object: int
+    """``ask``: the object's number; ``send``: -1, and what follows of objects is 0."""
+    object_bytes: int
+    """Its size on the wire."""
+    test_ps: int
+    """What one test against it costs."""
+    owner: int
+    """The PE that owns it."""
+    holders: int
+    """PEs that have it in memory for good, the owner among them."""
+    waiting: int
+    """``send``: rays that wait and may go to the other. ``ask``: rays that wait for the object."""
+    unasked: int
+    """``ask``: those of them that no request covers; ``send``: 0."""
+    requests: int
+    """``ask``: requests for it that are in flight."""
+    min_load: int
+    """What the configuration says, a share of n0 / nb as the floor of that many rays."""
+    batch: int
+    """Likewise."""
+    ask_at_least: int
+    """Likewise."""
+    parameter: Sequence[int]
+    """(8,) the policy's own numbers, in the order in which it declares them."""
+    memory: MutableSequence[int]
+    """(8,) for the policy to write: the PE's own, 0 at the start, kept from call to call."""
+    random: int
+    """A draw of 0 <= random < 2^63 for this question, made if a hook reads it: Philox4x64-10 with a
+    key from the seed and the PE, and the PE's draws so far as counter."""
 
     if TYPE_CHECKING:
 
@@ -36,12 +87,12 @@ class View:
             """One of the policy's own numbers."""
 
 
-@kernel
-def show(view: View, s: Any, pe: Any, network: Network, me: int, owner: int, waiting: int) -> None:
-    """Fill in what either rule is shown; what it may know of loads is up to the engine.
-
-    ``s`` and ``pe`` are the engine's records of the run and of the PE ``me`` that decides.
-    """
-    view.load, view.waiting = pe.load, waiting
-    if s.knows_hops:
-        view.hops = hops(network, me, owner)
+SELF, LOADS, WAY, OBJECT, RANDOM = (1 << n for n in range(5))
+GROUPS = {
+    SELF: ("now_ps", "me", "ready", "held_bytes"),
+    LOADS: ("known_load", "age_ps", "in_flight"),
+    WAY: ("hops", "send_ps", "receive_ps", "flight_ps"),
+    OBJECT: ("object", "object_bytes", "test_ps", "owner", "holders", "requests"),
+    RANDOM: ("random",),
+}
+"""Fields that are looked up together, if a hook reads any of them; the others always are there."""

@@ -18,7 +18,7 @@ from simmpp.machine.machine import Machine
 from simmpp.methods.table import SIMULATE
 from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import CEILING, POLICIES, REFERENCE, PolicyParameters
+from simmpp.policy.parameters import CEILING, REFERENCE, PolicyParameters
 from simmpp.workload.workload import Workload
 
 
@@ -52,7 +52,7 @@ class PolicyRun:
     @property
     def all_resident(self) -> bool:
         """Every object is in every memory, whatever the fraction."""
-        return POLICIES[self.parameters.name].all_resident
+        return self.parameters.rules.all_resident
 
 
 def make_point(config: Config, workload: Workload, seed: int | None = None) -> Point:

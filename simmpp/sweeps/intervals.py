@@ -4,7 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from statistics import fmean
+from typing import NamedTuple
+
+MOST_LOGARITHM = 700.0
+"""Few draws far apart have an end beyond what a float holds."""
+
+
+class Spread(NamedTuple):
+    """A mean over draws, and its confidence interval; nan where it is not known."""
+
+    mean: float
+    low: float
+    high: float
+
+    @classmethod
+    def unknown(cls, mean: float = math.nan) -> Spread:
+        """Draws that say nothing of how far others may be."""
+        return cls(mean, math.nan, math.nan)
 
 
 def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, float] | None:
@@ -16,6 +34,24 @@ def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, 
     return mean - half, mean + half
 
 
+def of_logarithms(values: Sequence[float], confidence: float = 0.95) -> Spread:
+    """Geometric mean and interval of positive draws: those of their logarithms.
+
+    Ends are positive, and those of 1 / values are 1 / the ends. A draw of 0 or infinity makes the
+    mean that, and no interval known; nan are those of no draws, or where both are among them.
+    """
+    if not values:
+        return Spread.unknown()
+    if min(values) == max(values):  # else rounding would tell equal draws from their mean
+        known = len(values) > 1 and 0 < values[0] < math.inf
+        return Spread(*(values[0],) * 3) if known else Spread.unknown(values[0])
+    logarithms = [math.log(value) if value else -math.inf for value in values]
+    if not all(map(math.isfinite, logarithms)):
+        return Spread.unknown(math.exp(sum(logarithms)))
+    mean, half = fmean(logarithms), half_width(logarithms, confidence)
+    return Spread(*(math.exp(min(x, MOST_LOGARITHM)) for x in (mean, mean - half, mean + half)))
+
+
 def half_width(values: Sequence[float], confidence: float) -> float:
     """Half of the interval of at least two finite draws; 0 if all are equal."""
     n, mean = len(values), fmean(values)
@@ -25,6 +61,7 @@ def half_width(values: Sequence[float], confidence: float) -> float:
     return quantile(n - 1, confidence) * deviation / math.sqrt(n)
 
 
+@cache
 def quantile(freedom: int, confidence: float) -> float:
     """Student's t that is exceeded on either side with probability (1 - confidence) / 2."""
     from scipy.special import stdtrit  # takes half a second

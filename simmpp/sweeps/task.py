@@ -12,7 +12,8 @@ from simmpp.config.config import Config
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.parameters import CEILING, POLICIES, PolicyParameters
+from simmpp.policy.hooks import NUMBERS, knows_loads, reads
+from simmpp.policy.parameters import CEILING, PolicyParameters
 from simmpp.sweeps.grid import GridPoint
 
 
@@ -41,7 +42,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     settings = config.settings
     if settings.method == SIMULATE and _holds_everything(config):
         policy = PolicyParameters(CEILING)
-    everywhere = POLICIES[policy.name].all_resident
+    everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
     is_drawn = METHODS[settings.method].is_placed and draws(memory, rules)
@@ -63,14 +64,13 @@ def task_of(point: GridPoint, digest: str) -> Task:
 
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
-    rules, defaults = POLICIES[policy.name], PolicyParameters(policy.name)
+    rules, defaults = policy.rules, PolicyParameters(policy.name)
     if rules.all_resident:
         return defaults
     ignored = ["label"]
-    ignored += [] if rules.sends else ["min_load", "batch"]
-    ignored += [] if rules.knows_loads else ["load_info"]
+    ignored += [name for name in NUMBERS if not reads(rules, name) and name not in rules.counts]
+    ignored += [] if knows_loads(rules) else ["load_info"]
     ignored += [] if rules.asks else ["merge_requests"]
-    ignored += [] if rules.asks and rules.ask_from == "ask_at_least" else ["ask_at_least"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
 

@@ -25,7 +25,7 @@ from simmpp.methods.table import METHODS, Method
 from simmpp.model.synthetic import synthetic
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.policy.parameters import POLICIES, PolicyParameters
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
 from simmpp.sweeps.journal import Outcome
@@ -99,7 +99,7 @@ def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
 
 def _effective_fraction(case: Case, method: Method) -> float:
     """The share of the objects that is really resident; the model's own where nothing is placed."""
-    if POLICIES[case.policy.name].all_resident:
+    if case.policy.rules.all_resident:
         return 1.0
     if method.is_placed:
         return case.place().effective_fraction

@@ -11,12 +11,12 @@ from sweep_rows import failed, sweep, written
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.report.page import words
 from simmpp.report.page.comparison import write_comparison
 from simmpp.report.page.difference import difference_of
 from simmpp.report.page.folder import read_folder
-from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.report import report_of, write_page
+from simmpp.run import words
+from simmpp.sweeps.winners.points import Points, points_of
 
 HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
 POLICIES = ("object", "ray", "concurrent", "replicated", HOSTILE)

@@ -85,13 +85,13 @@ def slow_network(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(presets, "load_preset", lambda name: changed)
 
 
-def to_the_more_loaded(view: View) -> bool:
-    return view.load <= view.min_load or view.load <= view.known_load
+def to_the_more_loaded(v: View) -> int:
+    return v.waiting if v.load <= v.min_load or v.load <= v.known_load else 0
 
 
 def invert_rule(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the concurrent policy send where it would not, and the other way round."""
-    inverted = dataclasses.replace(POLICIES["concurrent"], may_send=to_the_more_loaded)
+    inverted = dataclasses.replace(POLICIES["concurrent"], send=to_the_more_loaded)
     monkeypatch.setitem(POLICIES, "concurrent", inverted)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import Case, cases, random_case
+from builders import Case, cases, on_torus, random_case
 from hypothesis import given, settings
 from implementations import result_of, run
 from oracles.costs import transfer_ps
@@ -58,7 +58,7 @@ def waits_ps(case: Case) -> set[int]:
 @given(case=cases())
 @many
 def test_an_ejection_port_serves_one_message_at_a_time(engine: str, case: Case) -> None:
-    machine = case.machine
+    case, machine = on_torus(case), case.machine
     limits = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
     slowest = min((limit for limit in limits if limit != UNLIMITED), default=UNLIMITED)
     log = result_of(engine, on(case, contention=LINKS)).log

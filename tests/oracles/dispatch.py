@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 
-from oracles.network import distance
-from oracles.rules import View, numbers
 from oracles.state import PE, Part
-from oracles.world import World
+from oracles.view import Views, numbers
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
-from simmpp.policy.rules import Rule
+from simmpp.policy.hooks import knows_loads, names_in
+from simmpp.policy.policy import Hook
 
 Parcel = tuple[int, list[Part]]
 """A destination, and what goes to it in one message."""
 
 
-class Dispatch(World):
-    """The policy's two rules, and the refresh of loads."""
+class Dispatch(Views):
+    """The policy's hooks send and ask, and the refresh of loads."""
 
     def send_all(self, time: int, pe: PE) -> int:
         """Send all that may be sent from a time on; returns the end of that."""
@@ -38,10 +36,10 @@ class Dispatch(World):
     def decisions(self, pe: PE) -> Iterator[tuple[int, Part]]:
         """To whom what goes: rays, then requests; each is decided when it is drawn."""
         nothing_else = not pe.ready and not pe.inbox
-        if self.rules.may_send:
-            yield from self.rays_to_send(pe, nothing_else, self.rules.may_send)
-        if self.rules.may_ask:
-            yield from self.requests(pe, nothing_else, self.rules.may_ask)
+        if self.rules.send:
+            yield from self.rays_to_send(pe, nothing_else, self.rules.send)
+        if self.rules.ask:
+            yield from self.requests(pe, nothing_else, self.rules.ask)
 
     def packed(self, pe: PE, decided: list[tuple[int, Part]]) -> Iterator[Parcel]:
         """Messages of what has been decided, those that may share one together."""
@@ -56,38 +54,35 @@ class Dispatch(World):
         """All other PEs, beginning with the next one."""
         return [(pe.number + step) % self.nb for step in range(1, self.nb)]
 
-    def sendable(self, pe: PE, owner: int) -> list[int]:
-        """Rays that may be sent to an owner, in the order of the message."""
+    def is_asked(self, waiting: int, count: int | str, nothing_else: bool) -> bool:
+        """Do enough rays wait, or is nothing else to do?"""
+        if isinstance(count, str):
+            own = dict(zip(self.rules.parameters, self.policy.numbers, strict=True))
+            known = numbers(self.policy, self.workload.n_primaries, self.nb)
+            count = (known | own)[count]
+        return waiting > 0 and (nothing_else or waiting >= count)
+
+    def sendable(self, pe: PE, owner: int) -> list[list[int]]:
+        """Rays that may be sent to an owner, object by object, in the order of the message."""
         objects = {o for _, o, _ in pe.waiting if self.owners[o] == owner and not pe.in_flight[o]}
         by_age = sorted(objects, key=lambda o: pe.sendable_since[o])
-        return [ray for o in by_age for ray in pe.rays_of(o)]
+        return [pe.rays_of(o) for o in by_age]
 
-    def rays_to_send(
-        self, pe: PE, nothing_else: bool, may_send: Rule
-    ) -> Iterator[tuple[int, Part]]:
-        """One batch to each owner that the rule allows."""
+    def rays_to_send(self, pe: PE, nothing_else: bool, send: Hook) -> Iterator[tuple[int, Part]]:
+        """A batch to each owner that the hook lets any go to: of whole objects, until enough."""
+        draws = "random" in names_in(send)
         for owner in self.others(pe):
-            rays = self.sendable(pe, owner)
-            known, age = self.known_load(pe.clock, pe, owner)
-            seen = {"nothing_else": nothing_else, "known_load": known, "age_ps": age}
-            if not rays or not may_send(self.view(pe, owner, waiting=len(rays), **seen)):
+            groups, rays = self.sendable(pe, owner), list[int]()
+            waiting = sum(map(len, groups))
+            if not self.is_asked(waiting, self.rules.batch, nothing_else):
                 continue
-            pe.unfile(rays)
-            yield owner, Part(RAYS, len(rays) * self.machine.ray_bytes, rays=tuple(rays))
-
-    def view(self, pe: PE, owner: int, **seen: int | Fraction) -> View:
-        """What a rule of this PE sees when it decides about something that another one owns."""
-        hops = distance(self.machine, pe.number, owner) if self.rules.knows_hops else 0
-        own = numbers(self.policy, self.workload.n_primaries, self.nb)
-        return View(load=pe.load, hops=hops, **own, **seen)
-
-    def known_load(self, clock: int, pe: PE, owner: int) -> tuple[Fraction, int]:
-        """What a PE knows of the owner's load, and for how long it has."""
-        if self.policy.load_info == "none":
-            return Fraction(-1), clock
-        if self.policy.load_info == "exact":
-            return Fraction(self.pes[owner].ended_load), 0
-        return pe.known_load[owner], clock - pe.heard[owner]
+            enough = send(self.view_of_destination(pe, owner, waiting, nothing_else, draws))
+            while groups and len(rays) < enough:
+                rays += groups.pop(0)
+            if rays:
+                pe.unfile(rays)
+                pe.in_flight_to[owner] += len(rays)
+                yield owner, Part(RAYS, len(rays) * self.machine.ray_bytes, rays=tuple(rays))
 
     def unasked(self, pe: PE, obj: int) -> list[tuple[int, int, int]]:
         """Entries of the wait file that no request in flight will serve."""
@@ -96,21 +91,25 @@ class Dispatch(World):
             return [] if pe.in_flight[obj] else entries
         return entries[pe.in_flight[obj] :]
 
-    def requests(self, pe: PE, nothing_else: bool, may_ask: Rule) -> Iterator[tuple[int, Part]]:
-        """Requests for each object that the rule allows."""
+    def requests(self, pe: PE, nothing_else: bool, ask: Hook) -> Iterator[tuple[int, Part]]:
+        """Requests for each object that the hook allows, to whom it says."""
+        draws = "random" in names_in(ask)
         oldest = {o: self.unasked(pe, o) for o in {o for _, o, _ in pe.waiting}}
-        seen = {"nothing_else": nothing_else, "known_load": -1, "age_ps": 0}
         for obj in sorted((o for o in oldest if oldest[o]), key=lambda o: oldest[o][0]):
-            view = self.view(pe, self.owners[obj], waiting=len(oldest[obj]), **seen)
-            if not may_ask(view):
+            unasked = len(oldest[obj])
+            if not self.is_asked(unasked, self.rules.ask_at_least, nothing_else):
                 continue
-            for _ in oldest[obj][:1] if self.policy.merge_requests else oldest[obj]:
-                yield self.owners[obj], Part(REQUEST, self.machine.request_bytes, obj)
+            answer = ask(self.view_of_object(pe, obj, unasked, nothing_else, draws))
+            chosen = int(answer) - 2
+            has_it = 0 <= chosen < self.nb and obj in self.pes[chosen].resident
+            for _ in range(0 if answer <= 0 else 1 if self.policy.merge_requests else unasked):
+                other = chosen if has_it else self.owners[obj]
+                yield other, Part(REQUEST, self.machine.request_bytes, obj)
                 pe.in_flight[obj] += 1
 
     def refresh(self, pe: PE) -> None:
         """The own load to every partner that was sent nothing for long."""
-        if self.policy.refresh_ps is None or not self.rules.knows_loads:
+        if self.policy.refresh_ps is None or not knows_loads(self.rules):
             return
         for other in self.others(pe):
             silence = pe.clock - pe.last_departure[other]

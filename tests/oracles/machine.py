@@ -2,14 +2,13 @@
 
 One heap of instants with the order of ties written out; each step searches all rays, objects
 and PEs instead of keeping counts. Nothing of it is shared with the package but its data
-classes and the rules of policies, which it asks about all that waits, enough or not.
+classes and the hooks of policies, which it calls as plain Python.
 """
 
 from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterable
-from fractions import Fraction
 from typing import Any
 
 from oracles.costs import copy_ps, intersection_ps
@@ -20,8 +19,7 @@ from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import POLICIES, PolicyParameters
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.workload.workload import Workload
 
 
@@ -81,8 +79,9 @@ class Simulation(Dispatch):
         cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)
         self.ledger.received += 1
-        pe.known_load[message.source] = Fraction(message.load)
+        pe.known_load[message.source] = message.load
         pe.heard[message.source] = clock
+        pe.in_flight_to[message.source] = 0
         if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
         pe.refresh_allowed = not message.count(LOAD)
@@ -182,13 +181,13 @@ def simulate(
     placement: Placement,
     policy: PolicyParameters,
     ready_order: str = "depth-first",
-    rules: DataflowPolicy | None = None,
+    seed: int = 0,
 ) -> Outcome:
-    """Run a workload on a machine, under a policy or other rules."""
-    rules = rules or POLICIES[policy.name]
-    simulation = Simulation(workload, machine, placement, policy, ready_order, rules)
+    """Run a workload on a machine, under a policy; ``seed`` is of its random numbers."""
+    rules = policy.rules
+    simulation = Simulation(workload, machine, placement, policy, ready_order, rules, seed)
     simulation.run()
-    has = {"send": rules.may_send, "ask": rules.may_ask}
+    has = {"send": rules.send, "ask": rules.ask}
     return simulation.ledger.outcome(
         machine.processors, machine.header_bytes, tuple(rule for rule in has if has[rule])
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import NamedTuple
 
 
@@ -57,7 +56,7 @@ class PE:
     resident: set[int]
     ready: list[int]
     """Rays, the front one first."""
-    known_load: list[Fraction]
+    known_load: list[int]
     heard: Counter[int] = field(default_factory=Counter)
     """PE: when its load was heard last; 0 if never."""
     waiting: list[tuple[int, int, int]] = field(default_factory=list)
@@ -82,6 +81,12 @@ class PE:
     ended_load: int = 0
     """Load at the end of the last ended activity."""
     refresh_allowed: bool = True
+    in_flight_to: Counter[int] = field(default_factory=Counter)
+    """PE: rays sent to it since it was heard."""
+    memory: list[int] = field(default_factory=lambda: [0] * 8)
+    """For the policy."""
+    draws: int = 0
+    """Random numbers that the policy was given."""
 
     @property
     def load(self) -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -17,7 +16,7 @@ from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy
 from simmpp.workload.workload import Workload
 
 
@@ -30,7 +29,9 @@ class World:
     placement: Placement
     policy: PolicyParameters
     ready_order: str
-    rules: DataflowPolicy
+    rules: Policy
+    seed: int = 0
+    """Of the policy's random numbers."""
     queue: list[tuple[Any, ...]] = field(default_factory=list)
     """A heap of (key, what happens, to whom); keys are the order of ties and never equal:
     arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
@@ -61,7 +62,7 @@ class World:
         if self.rules.all_resident:
             resident = set(range(len(self.owners)))
         rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
-        share = Fraction(self.workload.n_primaries, self.nb)
+        share = self.workload.n_primaries // self.nb
         return PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
 
     def schedule(self, time: int, pe: PE, what: str) -> None:
@@ -118,7 +119,11 @@ class World:
 
     def sample_bytes(self, pe: PE) -> None:
         """Note how many bytes a PE holds."""
+        n_bytes = self.held_bytes(pe) + pe.load * self.machine.ray_bytes
+        self.ledger.held_bytes.append(n_bytes)
+
+    def held_bytes(self, pe: PE) -> int:
+        """Bytes of the objects that a PE holds."""
         pinned = {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
         held = pe.resident | pinned | set(pe.transient)
-        n_bytes = sum(self.object_bytes[o] for o in held) + pe.load * self.machine.ray_bytes
-        self.ledger.held_bytes.append(n_bytes)
+        return sum(self.object_bytes[o] for o in held)

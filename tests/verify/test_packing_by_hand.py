@@ -21,7 +21,7 @@ from implementations import IMPLEMENTATIONS, run
 
 from simmpp.machine.machine import CopyCost
 from simmpp.policy.parameters import POLICIES, PolicyParameters
-from simmpp.policy.rules import DataflowPolicy
+from simmpp.policy.policy import Policy
 from simmpp.policy.view import View
 from simmpp.workload.workload import CONE, POLYGON, REFLECTED, SHADOW, SPHERE
 
@@ -278,9 +278,7 @@ def test_all_is_decided_at_the_time_of_the_dispatch(
 ) -> None:
     # PE 0 has nothing heard, 1 ps after the start: a ray goes to PE 1, to 25. What is decided then
     # is decided at 25, 25 >= 20, unless all has been decided before.
-    monkeypatch.setitem(
-        POLICIES, "early", DataflowPolicy("early", "none", early, idle, knows_loads=True)
-    )
+    monkeypatch.setitem(POLICIES, "early", Policy("early", send=early, ask=idle))
     policy = PolicyParameters("early", packing=packing)
     places = {"owners": (0, 1, 2), "object_bytes": (40, 50, 50), "shape": (3, 1, 1)}
     outcome = run(implementation, case_of(policy, [(0, [1]), (0, [2])], **places))

@@ -43,7 +43,7 @@ from simmpp.engine.arrays.records import (
 )
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.policy.compiled_rules import VIEW
+from simmpp.policy.hooks import VIEW
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 
@@ -90,6 +90,9 @@ ARRAYS = {
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
     "owners": Array(I4),  # (N,)
+    # PEs that hold each object for good (CSR); empty where the policy does not want to know.
+    "holder_offsets": Array(I8),
+    "holder_pes": Array(I4),
     # Replicas as bits (bit o of the row_bytes at k * row_bytes: PE k holds object o) or, where
     # that takes less memory, as sorted ids (CSR); the other form is empty.
     "resident": Array(I1),
@@ -98,7 +101,9 @@ ARRAYS = {
     # of machine and policy
     "copy_costs": Array(COPY),
     "topology": Array(I8),  # as ``machine.topology`` reads it
-    "rule_view": Array(VIEW),  # (1,) what a rule is shown; filled anew for each question
+    # What hooks are shown, filled anew for each question: one for all PEs or, where a policy has a
+    # memory, one for each.
+    "policy_views": Array(VIEW),
     # of the run
     "sent_by_kind": Array(I8, lambda n: len(MESSAGE_KINDS)),
     "parts_by_kind": Array(I8, lambda n: len(MESSAGE_KINDS)),  # that all messages are made of
@@ -175,11 +180,14 @@ PARAMETERS = (
     "all_resident",
     "sends",
     "asks",
-    "may_send",  # addresses of the policy's rules
-    "may_ask",
-    "send_from",  # waiting rays from which on the rules are asked
+    "send",  # addresses of the policy's hooks, 0 for one that it does not have
+    "ask",
+    "send_from",  # waiting rays from which on they are asked
     "ask_from",
-    "knows_hops",
+    "send_reads",  # groups of the view's fields
+    "ask_reads",
+    "remembers",  # each PE has a view of its own
+    "random_key",
     "initial_load",  # floor(n0 / nb): known of a PE before it is heard
     "load_info",
     "listens",  # remembers the loads in headers

@@ -31,6 +31,7 @@ PE = np.dtype(
         ("peak_object_bytes", "i8"),  # of held_bytes
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
+        ("draws", "i8"),  # random numbers that its policy was given
     ],
     align=True,
 )
@@ -55,8 +56,7 @@ MISS = np.dtype(
         ("requests", "i4"),  # in flight
         ("pinned", "i4"),  # released rays that have not made their test yet
         ("transient", "i4"),  # 1: in transient memory
-        ("peer", "i4"),  # row of the owner in ``peers``, if the policy sends
-        ("hops", "i4"),  # links to the owner, with record_hops
+        ("peer", "i4"),  # row of the owner in ``peers``, if the policy sends or asks by loads
     ],
     align=True,
 )
@@ -68,6 +68,7 @@ PEER = np.dtype(
         ("sent_ps", "i8"),  # departure of the last message to it, 0 if none
         ("chain", "i4"),
         ("sendable", "i4"),  # rays waiting for its objects that may be sent
+        ("in_flight", "i4"),  # rays sent to it since it was heard
         ("exchanged", "i4"),  # 1: rays or objects went from one to the other
     ],
     align=True,

@@ -1,4 +1,4 @@
-"""What a PE does with waiting rays at the end of an activity: its policy's two rules.
+"""What a PE does with waiting rays at the end of an activity: its policy's hooks send and ask.
 
 Sends come before asks; owners in the order me + 1, me + 2, ... (mod nb), objects by the ray that
 has waited longest. The decisions cost nothing, the messages do: each is sent as soon as it is
@@ -7,22 +7,23 @@ decided on or, with packing, when all is decided (``send_made_up``).
 An example, concurrent dataflow with batch 2 and ask_at_least 3: rays 4, 6 and 9 wait for object 20
 of PE 3 and ray 5 for object 21 of PE 0; PE 1 decides, still has ready rays and holds 8 rays in all.
 
-    send  PE 3: 3 rays wait, enough to ask the rule; 8 > min_load, 8 > 5 (heard of PE 3): a message
-          RAYS takes 4, 6 and 9. The load is 5 when it is packed, and a rule asked next sees that.
-          PE 0: 1 ray, not enough: the rule is asked only with nothing else to do.
-    ask   Object 21: 1 ray, not enough. Had the rule kept 4, 6 and 9, object 20 would be asked for,
+    send  PE 3: 3 rays wait, enough to ask send; 8 > min_load, 8 > 5 (heard of PE 3): a message
+          RAYS takes 4, 6 and 9. The load is 5 when it is packed, and a hook asked next sees that.
+          PE 0: 1 ray, not enough: send is asked only with nothing else to do.
+    ask   Object 21: 1 ray, not enough. Had send kept 4, 6 and 9, object 20 would be asked for,
           and from then on its rays can't be sent until it is here.
 
-Progress, whatever the rules say: rays go only to the owner of the object they need next, where it
-is resident for good, and a fetched object is pinned for the rays that it makes ready. So every
-transfer makes at least one test, and stale loads can herd rays but not bounce them.
+Progress, whatever the hooks say: rays go only to the owner of the object they need next, where it
+is resident for good, only a PE that has it for good is asked for it, and a fetched object is pinned
+for the rays that it makes ready. So every transfer makes at least one test, and stale loads can
+herd rays but not bounce them.
 """
 
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import Lists, clear, first, following, sort_by_key
-from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, SINGLY, Row, Run
+from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key, unlink
+from simmpp.engine.arrays.records import NONE, SINGLY, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,
@@ -30,19 +31,24 @@ from simmpp.engine.arrays.views import (
     peer_rows,
     pes,
     rays,
-    rule_view,
     sendable,
     sort_items,
     sort_keys,
-    topology,
     unasked,
     unsent,
 )
-from simmpp.engine.pe.misses import drop_if_idle, set_peer_sendable, set_unasked, withdraw
+from simmpp.engine.pe.misses import (
+    drop_if_idle,
+    is_holder,
+    set_peer_sendable,
+    set_unasked,
+    withdraw,
+)
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
+from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.record.counters import note_work
-from simmpp.policy.compiled_rules import allows
-from simmpp.policy.view import show
+from simmpp.policy.hooks import consult
+from simmpp.policy.view import View
 
 
 @kernel
@@ -50,12 +56,13 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     """Send and ask as the policy says; returns the end of the activity."""
     pe = pes(s)[me]
     # Once, before anything is sent: what a message takes away doesn't make the next one urgent.
-    rule_view(s)[0].nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
+    view = view_of(s, me)
+    view.nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
     clock_ps = now_ps
     if s.sends:
-        clock_ps = _send_rays(s, me, clock_ps)
+        clock_ps = _send_rays(s, me, view, clock_ps)
     if s.asks:
-        clock_ps = _ask_for_objects(s, me, clock_ps)
+        clock_ps = _ask_for_objects(s, me, view, clock_ps)
     if s.packing != SINGLY:
         clock_ps = send_made_up(s, me, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
@@ -67,8 +74,8 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
 
 
 @kernel
-def _send_rays(s: Run, me: int, now_ps: int) -> int:
-    pe, view = pes(s)[me], rule_view(s)[0]
+def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
+    pe = pes(s)[me]
     # Collected before the first message, as sending changes the lists.
     n = _collect_peers(s, me, unsent(s), 2 * me + 1, 0)
     if view.nothing_else:
@@ -76,16 +83,16 @@ def _send_rays(s: Run, me: int, now_ps: int) -> int:
     clock_ps = now_ps
     for i in range(n):
         peer_row = sort_items(s)[i]
-        peer = peer_rows(s)[peer_row]
-        owner = peer.key % s.processors
-        _show_load(s, peer, owner, clock_ps)
-        show(view, s, pe, topology(s), me, owner, peer.sendable)
-        if allows(s.may_send, view):
-            n_rays = peer.sendable
-            head, tail = _take_rays(s, me, peer_row)
+        show_destination(s, view, me, peer_row, clock_ps)
+        may_go = consult(s.send, view)
+        if may_go > 0:
+            head, tail, n_rays = _take_rays(s, me, peer_row, may_go)
             pe.load -= n_rays
             s.rays_sent += n_rays
-            clock_ps = send_rays(s, me, owner, head, tail, n_rays, clock_ps)
+            if s.listens:
+                peer_rows(s)[peer_row].in_flight += n_rays
+            other = peer_rows(s)[peer_row].key % s.processors
+            clock_ps = send_rays(s, me, other, head, tail, n_rays, clock_ps)
     return clock_ps
 
 
@@ -104,25 +111,14 @@ def _collect_peers(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
 
 
 @kernel
-def _show_load(s: Run, peer: Row, owner: int, now_ps: int) -> None:
-    """Let the rule see what this PE knows of the owner's load, and how old that is."""
-    view = rule_view(s)[0]
-    if s.load_info == NO_INFO:
-        view.known_load, view.age_ps = NONE, now_ps
-    elif s.load_info == EXACT:
-        view.known_load, view.age_ps = pes(s)[owner].settled_load, 0
-    elif peer.load == NONE:
-        view.known_load, view.age_ps = s.initial_load, now_ps
-    else:
-        view.known_load, view.age_ps = peer.load, now_ps - peer.heard_ps
+def _take_rays(s: Run, me: int, peer_row: int, enough: int) -> tuple[int, int, int]:
+    """Unfile sendable rays of one owner, of whole objects, until there are enough or none is left.
 
-
-@kernel
-def _take_rays(s: Run, me: int, peer_row: int) -> tuple[int, int]:
-    """Unfile all sendable rays of one owner: objects as they became sendable; first and last."""
-    head, tail = NONE, NONE
+    Objects as they became sendable. Returns the first, the last and how many.
+    """
+    head, tail, n = NONE, NONE, 0
     miss_row = first(sendable(s), peer_row)
-    while miss_row >= 0:
+    while miss_row >= 0 and n < enough:
         # The successor is read first: the row may be given back.
         miss, successor = miss_rows(s)[miss_row], following(sendable(s), miss_row)
         if head == NONE:
@@ -130,35 +126,44 @@ def _take_rays(s: Run, me: int, peer_row: int) -> tuple[int, int]:
         else:
             rays(s)[tail].next = miss.first
         tail = miss.last
+        n += miss.n
         miss.first, miss.n = NONE, 0
+        unlink(sendable(s), peer_row, miss_row)
         set_unasked(s, me, miss_row, 0)
         drop_if_idle(s, miss_row)
         miss_row = successor
-    clear(sendable(s), peer_row)
-    set_peer_sendable(s, me, peer_row, 0)
-    return head, tail
+    set_peer_sendable(s, me, peer_row, peer_rows(s)[peer_row].sendable - n)
+    return head, tail, n
 
 
 @kernel
-def _ask_for_objects(s: Run, me: int, now_ps: int) -> int:
-    pe, view = pes(s)[me], rule_view(s)[0]
-    view.known_load, view.age_ps = NONE, 0
+def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
     n = _collect_misses(s, me, view.nothing_else)
     clock_ps = now_ps
     for i in range(n):
         miss_row = sort_items(s)[i]
-        miss = miss_rows(s)[miss_row]
-        obj = miss.key % s.n_objects
-        show(view, s, pe, topology(s), me, owners(s)[obj], miss.unasked)
-        if allows(s.may_ask, view):
+        show_object(s, view, me, miss_row, clock_ps)
+        answer = consult(s.ask, view)
+        if answer > 0:
+            miss = miss_rows(s)[miss_row]
+            obj = miss.key % s.n_objects
+            other = _who_has(s, me, obj, answer - 2)
             requests = 1 if s.merge_requests else miss.unasked
             if miss.requests == 0:
                 withdraw(s, me, miss_row)
             set_unasked(s, me, miss_row, 0)
             miss.requests += requests
             for _ in range(requests):
-                clock_ps = send_request(s, me, obj, clock_ps)
+                clock_ps = send_request(s, me, other, obj, clock_ps)
     return clock_ps
+
+
+@kernel
+def _who_has(s: Run, me: int, obj: int, chosen: int) -> int:
+    """The PE that the policy has chosen, if it has the object for good; else the owner."""
+    if 0 <= chosen < s.processors and is_holder(s, chosen, obj):
+        return chosen
+    return owners(s)[obj]
 
 
 @kernel

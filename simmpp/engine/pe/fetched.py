@@ -11,14 +11,17 @@ from simmpp.engine.pe.ready import make_ready
 
 
 @kernel
-def admit_object(s: Run, me: int, obj: int) -> None:
-    """A fetched object has arrived: rays that wait for it are released for one test each."""
+def admit_object(s: Run, me: int, obj: int, links: int) -> None:
+    """A fetched object has arrived: rays that wait for it are released for one test each.
+
+    ``links`` were crossed for each of them, the request's and its own.
+    """
     miss_row = find(misses(s), me * s.n_objects + obj)
     miss = miss_rows(s)[miss_row]
     miss.requests -= 1
     if miss.pinned == 0 and miss.transient == 0:
         pes(s)[me].held_bytes += object_bytes(s)[obj]
-    _release(s, me, miss_row)
+    _release(s, me, miss_row, links)
     if miss.requests == 0 and miss.n > 0:
         set_sendable(s, me, miss_row, miss.n)
     if s.transient > 0:
@@ -29,7 +32,7 @@ def admit_object(s: Run, me: int, obj: int) -> None:
 
 
 @kernel
-def _release(s: Run, me: int, miss_row: int) -> None:
+def _release(s: Run, me: int, miss_row: int, links: int) -> None:
     """Grant the waiting rays (one, if requests are not merged) their next test."""
     miss = miss_rows(s)[miss_row]
     if miss.n == 0:
@@ -37,10 +40,10 @@ def _release(s: Run, me: int, miss_row: int) -> None:
     n = miss.n if s.merge_requests else 1
     head = miss.first
     tail = head
-    _grant(s, tail, miss.hops)
+    _grant(s, tail, links)
     for _ in range(n - 1):
         tail = rays(s)[tail].next
-        _grant(s, tail, miss.hops)
+        _grant(s, tail, links)
     miss.first = rays(s)[tail].next
     miss.n -= n
     miss.pinned += n
@@ -48,10 +51,9 @@ def _release(s: Run, me: int, miss_row: int) -> None:
 
 
 @kernel
-def _grant(s: Run, ray: int, hops: int) -> None:
-    """What the ray was filed for has come to it, the same way back."""
+def _grant(s: Run, ray: int, links: int) -> None:
     rays(s)[ray].granted = 1
-    rays(s)[ray].hops += hops
+    rays(s)[ray].hops += links
 
 
 @kernel

@@ -22,11 +22,10 @@ from simmpp.engine.arrays.views import (
     replica_offsets,
     resident,
     sendable,
-    topology,
     unasked,
     unsent,
 )
-from simmpp.machine.topology import hops
+from simmpp.policy.view import LOADS
 
 
 @kernel
@@ -40,6 +39,12 @@ def is_in_memory(s: Run, me: int, obj: int) -> bool:
         return False
     miss_row = find(misses(s), me * s.n_objects + obj)
     return miss_row != NONE and miss_rows(s)[miss_row].transient == 1
+
+
+@kernel
+def is_holder(s: Run, pe: int, obj: int) -> bool:
+    """Does a PE have the object for good, as its owner or as a replica?"""
+    return owners(s)[obj] == pe or _is_replica(s, pe, obj)
 
 
 @kernel
@@ -81,13 +86,9 @@ def peer_of(s: Run, me: int, other: int) -> int:
 
 @kernel
 def file_ray(s: Run, me: int, ray: int, obj: int) -> None:
-    """A ray begins to wait, filed under (object, owner).
-
-    Whether it will be sent or the object fetched, something has to go to the owner for it.
-    """
+    """A ray begins to wait, filed under (object, owner)."""
     miss_row = _miss_of(s, me, obj)
     miss = miss_rows(s)[miss_row]
-    rays(s)[ray].hops += miss.hops
     link(rays(s), miss, ray)
     miss.n += 1
     pe = pes(s)[me]
@@ -115,8 +116,7 @@ def _miss_of(s: Run, me: int, obj: int) -> int:
         miss.requests = 0
         miss.pinned = 0
         miss.transient = 0
-        miss.hops = hops(topology(s), me, owners(s)[obj]) if s.record_hops else 0
-        if s.sends:
+        if s.sends or s.ask_reads & LOADS:
             miss.peer = peer_of(s, me, owners(s)[obj])
     return miss_row
 

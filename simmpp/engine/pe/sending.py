@@ -8,8 +8,6 @@ decided. Each function returns the moment when what it sent has been packed.
 
 from __future__ import annotations
 
-from typing import Any
-
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import give_back, sort_by_key, take
 from simmpp.engine.arrays.records import NONE, PACK, REQUESTS_TOGETHER, SINGLY, Row, Run
@@ -20,7 +18,6 @@ from simmpp.engine.arrays.views import (
     messages,
     object_bytes,
     outbox,
-    owners,
     parts_by_kind,
     peer_rows,
     pes,
@@ -29,17 +26,11 @@ from simmpp.engine.arrays.views import (
     sort_keys,
 )
 from simmpp.engine.network import depart
+from simmpp.engine.pe.costs import copy_ps
 from simmpp.engine.pe.misses import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
-from simmpp.machine.transfer import transfer_ps
-
-
-@kernel
-def copy_ps(cost: Any, payload_bytes: int) -> int:
-    """Packing or unpacking of one part: fixed + per byte of payload."""
-    return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
 
 
 @kernel
@@ -54,17 +45,17 @@ def parts_ps(s: Run, message: int, which: int) -> int:
 
 
 @kernel
-def send_request(s: Run, me: int, obj: int, now_ps: int) -> int:
-    """Ask the owner of an object for it."""
-    row = _new_part(s, REQUEST, owners(s)[obj], s.request_bytes)
+def send_request(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
+    """Ask a PE that has an object for it."""
+    row = _new_part(s, REQUEST, other, s.request_bytes)
     messages(s)[row].obj = obj
     return _post(s, me, row, now_ps)
 
 
 @kernel
-def send_rays(s: Run, me: int, owner: int, first: int, last: int, n: int, now_ps: int) -> int:
+def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
-    row = _new_part(s, RAYS, owner, n * s.ray_bytes)
+    row = _new_part(s, RAYS, other, n * s.ray_bytes)
     m = messages(s)[row]
     m.first, m.last, m.n = first, last, n
     return _post(s, me, row, now_ps)

@@ -22,6 +22,7 @@ from simmpp.engine.arrays.views import (
     test_ps,
     tested_objects,
     tested_rays,
+    topology,
 )
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
@@ -32,6 +33,7 @@ from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import LOAD, OBJECT, RAYS
+from simmpp.machine.topology import hops
 
 SLEEP = -1
 
@@ -93,9 +95,10 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     # Heard before an answer is packed, and whatever the message is.
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
+    links = hops(topology(s), m.source, me) if s.record_hops else 0
     part = message
     while part != NONE:
-        _take_in(s, me, messages(s)[part])
+        _take_in(s, me, messages(s)[part], links)
         part = messages(s)[part].part
     if s.logs:
         note_receive(s, me, message, now_ps, clock_ps)
@@ -113,15 +116,26 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
 
 
 @kernel
-def _take_in(s: Run, me: int, m: Row) -> None:
-    """The part of a message that rays or an object are."""
+def _take_in(s: Run, me: int, m: Row, links: int) -> None:
+    """The part of a message that rays or an object are, which came over that many links."""
     if m.kind == OBJECT:
-        admit_object(s, me, m.obj)
+        admit_object(s, me, m.obj, 2 * links)
     elif m.kind == RAYS:
         pe = pes(s)[me]
         pe.load += m.n
         pe.peak_rays = max(pe.peak_rays, pe.load)
+        if links > 0:
+            _cross(s, m.first, m.n, links)
         make_ready(s, me, m.first, m.last, m.n)
+
+
+@kernel
+def _cross(s: Run, first: int, n: int, links: int) -> None:
+    """Links were crossed by n linked rays."""
+    ray = first
+    for _ in range(n):
+        rays(s)[ray].hops += links
+        ray = rays(s)[ray].next
 
 
 @kernel
@@ -131,6 +145,7 @@ def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> No
         peer_row = peer_of(s, me, source)
         peer_rows(s)[peer_row].load = load
         peer_rows(s)[peer_row].heard_ps = now_ps
+        peer_rows(s)[peer_row].in_flight = 0
         if s.refresh_ps != NONE and kind in (OBJECT, RAYS):
             note_exchange(s, me, peer_row)
 

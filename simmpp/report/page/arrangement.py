@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.common.files import Row, sort_key
-from simmpp.methods.columns import KEYS
-from simmpp.report.page import words
+from simmpp.run import words
 
-KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 PREFERRED = ("fraction", "processors")
 """Abscissas, of those with equally many values."""
 MOST_PANELS = 12
@@ -30,16 +28,6 @@ class Arrangement:
     """One panel for each of its values; one panel in all where there is no such axis."""
     plate_axes: tuple[str, ...]
     """The others: one plate of panels for each combination of them that there is."""
-
-
-def varying_axes(rows: Sequence[Row], further: Sequence[str]) -> dict[str, list[Any]]:
-    """The axes along which rows differ, but for policy and seed."""
-    axes: dict[str, list[Any]] = {}
-    for name in (*KEY_AXES, *further):
-        values = {row[name] for row in rows}
-        if len(values) > 1:
-            axes[name] = sorted(values, key=lambda cell: sort_key({"": cell}, ("",)))
-    return axes
 
 
 def abscissas(axes: Axes) -> list[str]:

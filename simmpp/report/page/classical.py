@@ -10,16 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from statistics import fmean
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.units import share
 from simmpp.methods.columns import PLACE
 from simmpp.placement.placement import AS_FRACTION
-from simmpp.report.page.contest import makespan_ratios, means, replicated_policies
-from simmpp.report.page.points import Points
-from simmpp.report.page.words import is_number
+from simmpp.policy.parameters import CLASSICAL
+from simmpp.run.words import is_number
+from simmpp.sweeps.intervals import of_logarithms
+from simmpp.sweeps.winners.contest import makespan_ratios, means, replicated_policies
+from simmpp.sweeps.winners.points import Points
 
 KEPT = "memory.transient"
 FREE = ("placement.pixels", "placement.owners", "memory.residents", KEPT)
@@ -35,6 +36,8 @@ class Duel:
     other: int
     ratio: float
     """T(other) / T(classical): the mean of the seeds' own ratios; nan without common ones."""
+    absent: tuple[str, ...]
+    """Classical policies that were not run with that memory, or failed."""
 
 
 def duels_of(points: Points) -> list[Duel]:
@@ -70,7 +73,9 @@ def _duel(points: Points, rivals: list[int], flows: list[int]) -> Duel:
     times = means(points, [*rivals, *flows])
     best, other = (min(numbers, key=lambda n: times[n]) for numbers in (rivals, flows))
     ratios = makespan_ratios(points, other, best)
-    return Duel(best, other, fmean(ratios) if ratios else math.nan)
+    there = {points.name(number) for number in rivals}
+    absent = tuple(name for name in CLASSICAL if name not in there)
+    return Duel(best, other, of_logarithms(ratios).mean, absent)
 
 
 def _keeps_no_more(points: Points, one: int, other: int) -> bool:

@@ -6,13 +6,13 @@ from pathlib import Path
 
 from simmpp.common.files import write_text
 from simmpp.common.units import counted
-from simmpp.report.page.arrangement import varying_axes
 from simmpp.report.page.difference import BEYOND, SideBySide, changes_by_measure, line, ranked
 from simmpp.report.page.figures.figure import Figure, figure_data
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.template import rendered
 from simmpp.run.provenance import difference
+from simmpp.sweeps.winners.points import varying_axes
 
 MOST_CHANGES = 300
 """Lines of the page's table."""

@@ -8,11 +8,10 @@ from typing import Any
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS, PACKED
 from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
-from simmpp.report.page import words
-from simmpp.report.page.arrangement import KEY_AXES
 from simmpp.report.page.figures.figure import styles_of
-from simmpp.report.page.points import ACCOUNTS, KINDS, Points
+from simmpp.run import words
 from simmpp.sweeps.profits import MEASURES, STATISTICS
+from simmpp.sweeps.winners.points import ACCOUNTS, KEY_AXES, KINDS, Points
 
 MOST_EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""

@@ -16,14 +16,14 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps
 from simmpp.methods.columns import PLACE
 from simmpp.policy.parameters import REFERENCE
-from simmpp.report.page import words
-from simmpp.report.page.contest import TOO_FEW_SEEDS
 from simmpp.report.page.folder import Folder
-from simmpp.report.page.points import Points, points_of
+from simmpp.run import words
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.matching import extremes, matched, percent
+from simmpp.sweeps.winners.contest import TOO_FEW_SEEDS
+from simmpp.sweeps.winners.points import Points, points_of
 
 BEYOND, WITHIN = "beyond the interval", "within the interval"
 COMPARED = {

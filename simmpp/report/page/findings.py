@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 
-from simmpp.common.units import counted
 from simmpp.policy.parameters import REFERENCE
-from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.classical import FREE, Duel, duels_of
-from simmpp.report.page.contest import (
+from simmpp.run import words
+from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
     SURE,
@@ -24,7 +24,7 @@ from simmpp.report.page.contest import (
     contests_of,
     replicated_policies,
 )
-from simmpp.report.page.points import Points
+from simmpp.sweeps.winners.points import Points
 
 
 @dataclass(frozen=True)
@@ -42,48 +42,16 @@ class Win:
     lead: str
     """By how much it is ahead of the next, and who that is."""
     sure: str
+    points: tuple[int, ...]
+    """Numbers of the points that say so."""
 
 
-def sentences(points: Points) -> list[str]:
-    """The answer in a few lines."""
-    contests = contests_of(points)
-    if not contests:
-        return ["No point has a result."]
-    lines = [_fastest(points, contests), *_best_gains(points)]
-    return [*lines, *_classical(points), *_ceiling(points, contests), *_failed(points)]
+def sentences(points: Points) -> list[Sentence]:
+    """The answer, then what else there is to know, in a few lines."""
+    return [*answer(points), *_best_gains(points), *_classical(points)]
 
 
-def _fastest(points: Points, contests: Sequence[Contest]) -> str:
-    wins: dict[str, list[Contest]] = {}
-    for contest in contests:
-        if contest.certainty != EQUAL:
-            wins.setdefault(points.profits[contest.best]["policy"], []).append(contest)
-    ranked = sorted(wins.items(), key=lambda item: -len(item[1]))
-    equal = sum(contest.certainty == EQUAL for contest in contests)
-    parts = [f"{words.policy(title)} at {len(won)}{_of_these(won)}" for title, won in ranked]
-    parts += [f"at {equal} the two fastest are equal"] if equal else []
-    if len(contests) == 1:
-        who = (
-            f"{words.policy(ranked[0][0])}{_of_these(contests)}"
-            if ranked
-            else "not one: two are equal"
-        )
-        return f"The fastest dataflow is {who}."
-    axes = ", ".join(words.SHORT.get(name, name) for name in points.axes)
-    places = f"{counted(len(contests), 'place')}{f' ({axes})' if axes else ''}"
-    return f"Of {places} the fastest dataflow is {'; '.join(parts)}."
-
-
-def _of_these(won: Sequence[Contest]) -> str:
-    unsure = sum(contest.certainty == UNSURE for contest in won)
-    if any(contest.certainty == TOO_FEW_SEEDS for contest in won):
-        return " (how sure is not known: too few seeds)"
-    if not unsure:
-        return ""
-    return f" ({f'at {unsure} of them ' if unsure < len(won) else ''}by no more than seeds differ)"
-
-
-def _best_gains(points: Points) -> Iterator[str]:
+def _best_gains(points: Points) -> Iterator[Sentence]:
     """Where each dataflow but the reference gains most and least."""
     no_flows = {REFERENCE, *replicated_policies(points)}
     titles = dict.fromkeys(row["policy"] for row in points.profits)
@@ -94,7 +62,7 @@ def _best_gains(points: Points) -> Iterator[str]:
             yield _gain(points, title, numbers)
 
 
-def _gain(points: Points, title: str, numbers: Sequence[int]) -> str:
+def _gain(points: Points, title: str, numbers: Sequence[int]) -> Sentence:
     def profit(number: int) -> float:
         return float(points.profits[number]["time_profit"])
 
@@ -105,10 +73,11 @@ def _gain(points: Points, title: str, numbers: Sequence[int]) -> str:
     text = f"{words.capital(words.policy(title))}: time profit {profit(best):.3g}"
     text += f" ({aside})" if aside else ""
     if len(numbers) == 1:
-        return text + "."
+        return Sentence(text + ".", (best,))
     middle = median(map(profit, numbers))
     where = words.point(points.profits[worst], names)
-    return f"{text} at best, {middle:.3g} in the median, {profit(worst):.3g} at worst ({where})."
+    text += f" at best, {middle:.3g} in the median, {profit(worst):.3g} at worst ({where})."
+    return Sentence(text, (best, worst))
 
 
 def _interval(points: Points, number: int) -> str:
@@ -117,7 +86,7 @@ def _interval(points: Points, number: int) -> str:
     return f"95 % interval {low:.3g} to {high:.3g}" if words.is_number(low) and low < high else ""
 
 
-def _classical(points: Points) -> Iterator[str]:
+def _classical(points: Points) -> Iterator[Sentence]:
     """The best classical way beside each dataflow that is none."""
     by_title: dict[str, list[Duel]] = {}
     for duel in duels_of(points):
@@ -125,7 +94,7 @@ def _classical(points: Points) -> Iterator[str]:
             by_title.setdefault(points.profits[duel.other]["policy"], []).append(duel)
     for title, duels in by_title.items():
         ways = Counter(words.policy(points.profits[duel.classical]["policy"]) for duel in duels)
-        flow, times = words.policy(title), range_text(duel.ratio for duel in duels)
+        flow, times = words.policy(title), words.span(duel.ratio for duel in duels)
         free = [name for name in FREE if name in points.axes]
         beaten = sum(duel.ratio < 1 for duel in duels)
         if len(duels) == 1:
@@ -135,29 +104,18 @@ def _classical(points: Points) -> Iterator[str]:
             at = "; ".join(f"{way} at {number}" for way, number in ways.most_common())
             over = f" (over {', '.join(free)})" if free else ""
             where, end = f"{at} of {len(duels)} places{over}", f" (less at {beaten or 'none'})"
-        yield (
-            f"With no more memory than {flow} the best classical way is {where}: "
-            f"{flow} takes {times} times as long{end}."
-        )
+        text = f"With no more memory than {flow} the best classical way is {where}: {flow} takes"
+        text += f" {times} times as long{end}{_not_run(duels)}."
+        yield Sentence(text, tuple(duel.other for duel in duels))
 
 
-def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
-    ceilings = [contest.ceiling for contest in contests if contest.ceiling is not None]
-    if ceilings:
-        beaten = sum(ceiling < 1 for ceiling in ceilings)
-        longer = range_text(1 / ceiling for ceiling in ceilings)
-        text = (
-            "With everything in every memory (replicated, no dataflow) the picture takes "
-            f"{longer} times as long as with the fastest dataflow"
-        )
-        several = f"; at {beaten or 'none'} of {len(ceilings)} places a dataflow beats it"
-        yield f"{text}{several if len(ceilings) > 1 else ''}."
-
-
-def _failed(points: Points) -> Iterator[str]:
-    missing = [n for n, runs in enumerate(points.runs) if not runs]
-    if missing:
-        yield f"{counted(len(missing), 'point')} of {len(points.runs)} failed and have no result."
+def _not_run(duels: Sequence[Duel]) -> str:
+    """Classical dataflows that are not among those that were compared."""
+    counts = Counter(name for duel in duels for name in duel.absent)
+    return "".join(
+        f"; {words.policy(name)} was not run" + ("" if n == len(duels) else f" at {n} of them")
+        for name, n in counts.items()
+    )
 
 
 def wins(points: Points) -> list[Win]:
@@ -183,9 +141,10 @@ def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -
             winner,
             _where(points, contests, places, along),
             len(places),
-            range_text(points.profits[contest.best]["time_profit"] for contest in won),
+            words.span(points.profits[contest.best]["time_profit"] for contest in won),
             _lead(points, won),
             _sure(won),
+            tuple(contest.best for contest in won),
         )
 
 
@@ -197,7 +156,7 @@ def _winner(points: Points, contest: Contest) -> str:
 
 def _where(points: Points, contests: Sequence[Contest], places: Sequence[int], along: str) -> str:
     """``"1.56 % to 40 %, 60 %"``: neighbours are joined, where they are numbers."""
-    cells = [points.profits[contests[place].best][along] for place in places]
+    cells = [points.at(contests[place].best, along) for place in places]
     values = [words.value(along, cell) for cell in cells] if along != "policy" else [""]
     if not all(map(words.is_number, points.axes.get(along, [""]))):
         return ", ".join(values)
@@ -213,7 +172,7 @@ def _lead(points: Points, won: Sequence[Contest]) -> str:
     seconds = {points.profits[contest.second or 0]["policy"] for contest in ahead}
     if not ahead:
         return ""
-    lead = range_text((contest.lead - 1) * 100 for contest in ahead)
+    lead = words.span((contest.lead - 1) * 100 for contest in ahead)
     return f"{lead} % over {' or '.join(sorted(seconds))}"
 
 
@@ -230,12 +189,3 @@ def _sure(won: Sequence[Contest]) -> str:
     if counts[UNSURE] == len(won):
         return "no difference that these seeds can show"
     return f"beyond the 95 % interval at {counts[SURE]} of {len(won)}"
-
-
-def range_text(values: Iterable[float]) -> str:
-    """``"1.3 to 1.71"``; one number where all are the same."""
-    ordered = sorted(value for value in values if words.is_number(value))
-    if not ordered:
-        return ""
-    low, high = f"{ordered[0]:.3g}", f"{ordered[-1]:.3g}"
-    return low if low == high or math.isnan(ordered[0]) else f"{low} to {high}"

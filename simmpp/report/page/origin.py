@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from simmpp.common.units import counted
-from simmpp.report.page import words
 from simmpp.report.page.folder import Folder, number_of
+from simmpp.run import words
 
 UNSAID = ("sweep", "check", "seeds", "policy")
 """Keys of a configuration that the figures show."""

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from simmpp.plot.curves import Panel
 from simmpp.plot.matplotlib_panels import draw
-from simmpp.report.page.arrangement import varying_axes
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.figures.stills import titled
 from simmpp.report.page.folder import numbers_of
 from simmpp.sweeps.profits import profit_columns
+from simmpp.sweeps.winners.points import varying_axes
 
 NOTE = "wide and pale: before"
 MOST_OVERLAID = 48

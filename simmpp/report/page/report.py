@@ -12,7 +12,6 @@ from typing import Any
 from simmpp.common.files import write_text
 from simmpp.common.folders import is_at_work
 from simmpp.common.units import counted
-from simmpp.report.page import words
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
@@ -21,10 +20,11 @@ from simmpp.report.page.figures.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.origin import facts, origin
-from simmpp.report.page.points import Points, points_of
 from simmpp.report.page.template import rendered
+from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.winners.points import Points, points_of
 
 PAGE = "report.html"
 LOOK_S = 1.0

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from simmpp.plot.curves import PERCENT, Bars, Scale
-from simmpp.report.page import words
+from simmpp.report.page import scales
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figures.figure import Figure, styles_of
-from simmpp.report.page.points import Points
+from simmpp.run import words
+from simmpp.sweeps.winners.points import Points
 
 STEMS = ACCOUNTS_STEM, MESSAGES_STEM = ("accounts-by-policy", "messages-by-kind")
 BAR_HEADROOM = 1.02
@@ -46,7 +47,7 @@ def _figure(
     along = abscissas(points.axes)[0]
     facet = None if along == "policy" else "policy"
     arrangement = arrange(points.profits, points.axes, along, facet)
-    x = words.abscissa(along, list(arrangement.values))[0]
+    x = scales.abscissa(along, list(arrangement.values))[0]
     styles = {words.policy(title): n for title, n in styles_of(points.profits).items()}
     bars_of: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
@@ -59,7 +60,7 @@ def _figure(
         bars_of[plate] = []
         for panel in sorted(panels, key=lambda panel: styles.get(panel, 0)):
             numbers = list(drawn[panel])
-            names = tuple(words.label(along, points.profits[n][along]) for n in numbers)
+            names = tuple(scales.label(along, points.profits[n][along]) for n in numbers)
             parts = _parts(list(drawn[panel].values()))
             bars_of[plate].append(Bars(panel, Scale(x.label, names=names), y, parts, numbers))
     return Figure(stem, title, note, bars_of)

@@ -10,7 +10,7 @@ from typing import Any
 from simmpp.common.files import Row
 from simmpp.plot.curves import Bars, Panel
 from simmpp.plot.plotly_panels import drawn
-from simmpp.report.page import words
+from simmpp.run import words
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from simmpp.report.page.figures import accuracy, bar_figures, paper, profit_figu
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
-from simmpp.report.page.points import Points
+from simmpp.sweeps.winners.points import Points
 
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
 

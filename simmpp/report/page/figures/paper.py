@@ -8,10 +8,10 @@ from simmpp.common.files import Row
 from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.folder import Folder
-from simmpp.report.page.points import Points
 from simmpp.studies.nebel98.figures import FIGURES, NAMES
 from simmpp.studies.nebel98.reproduce import EXPERIMENTS, load_experiment
 from simmpp.sweeps.ratios import CONCURRENT, RAY, CurvePoint, RowIndex
+from simmpp.sweeps.winners.points import Points
 
 NEEDED = {"figure3": {REFERENCE, RAY}}
 """Policies that a figure compares, where it is not object and concurrent dataflow."""

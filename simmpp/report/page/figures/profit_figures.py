@@ -8,9 +8,10 @@ from itertools import chain
 
 from simmpp.common.files import Row
 from simmpp.plot.curves import LOG_MARGIN, Curve, Panel, Scale, Spread
-from simmpp.report.page import words
+from simmpp.report.page import scales
 from simmpp.report.page.arrangement import Arrangement, Axes, abscissas, arrange, plates
 from simmpp.report.page.figures.figure import Figure, slug, styles_of
+from simmpp.run import words
 from simmpp.sweeps.profits import MEASURES
 
 MOST_ABSCISSAS, LEAST_VALUES, MOST_PLATES = 2, 3, 16
@@ -95,7 +96,7 @@ def _panels(
     measure: str,
     arrangement: Arrangement,
 ) -> list[Panel]:
-    x, places = words.abscissa(arrangement.abscissa, list(arrangement.values))
+    x, places = scales.abscissa(arrangement.abscissa, list(arrangement.values))
     curves: dict[str, list[Curve]] = {}
     for title, numbered in panels.items():
         placed = [(number, places[row[arrangement.abscissa]], row) for number, row in numbered]
@@ -111,7 +112,7 @@ def _scale(label: str, curves: Iterable[Curve]) -> Scale:
     if not spreads:
         return Scale(label)
     low, high = min(spread.low for spread in spreads), max(spread.high for spread in spreads)
-    if low > 0 and words.is_log(spread.mean for spread in spreads):
+    if low > 0 and scales.is_log(spread.mean for spread in spreads):
         return Scale(label, is_log=True, limits=(low / LOG_MARGIN, high * LOG_MARGIN))
     return Scale(label, limits=(min(low, 0.0), (high or 1.0) * HEADROOM))
 

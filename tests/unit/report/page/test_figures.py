@@ -20,8 +20,8 @@ from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.figures.bar_figures import bar_figures
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
-from simmpp.report.page.points import ACCOUNTS, KINDS, Points, points_of
 from simmpp.sweeps.profits import MEASURES
+from simmpp.sweeps.winners.points import ACCOUNTS, KINDS, Points, points_of
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
 VALUES: dict[str, Any] = {

@@ -18,11 +18,11 @@ from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.paper import paper_figures
 from simmpp.report.page.folder import Folder, read_folder
-from simmpp.report.page.points import points_of
 from simmpp.report.page.report import report_of, write_page
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows
+from simmpp.sweeps.winners.points import points_of
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98" / "plain"
 HOSTILE = '</script><script>document.title="broken"</script>" \' & {{ 7 * 7 }} <!--'

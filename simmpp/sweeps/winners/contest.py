@@ -1,20 +1,24 @@
-"""Who is fastest at one place of a sweep, by how much, and whether its seeds can tell.
+"""Who is fastest in one case of a sweep, by how much, and whether its seeds can tell.
 
-Policies share the draws of a seed, so they are compared seed by seed. The interval is Student's
-(1908) of the ratios of makespans.
+A *case* is a place of the sweep: all that a point has but its policy; places with the same
+simulations are one. Policies share the draws of a
+seed, so they are compared seed by seed. Times differ by factors, so means and intervals are those
+of the logarithms: the geometric mean, which has the same winner whichever way ratios are taken, and
+Student's interval (1908).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
 from simmpp.policy.parameters import CEILING
-from simmpp.report.page.points import Points
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
-from simmpp.sweeps.intervals import interval
+from simmpp.sweeps.intervals import Spread, of_logarithms
+from simmpp.sweeps.winners.points import Points
 
 SURE, UNSURE, EQUAL, ALONE, TOO_FEW_SEEDS = "sure", "unsure", "equal", "alone", "too few seeds"
 """Beyond the interval, within it, the same in all seeds, without others, without an interval."""
@@ -22,7 +26,7 @@ SURE, UNSURE, EQUAL, ALONE, TOO_FEW_SEEDS = "sure", "unsure", "equal", "alone", 
 
 @dataclass(frozen=True)
 class Contest:
-    """The two fastest dataflows at one place."""
+    """The two fastest dataflows of one case."""
 
     best: int
     """Number of the fastest point."""
@@ -34,15 +38,22 @@ class Contest:
     high: float
     """Its 95 % interval."""
     certainty: str
+    """SURE if the lead over every other dataflow is."""
+    rivals: tuple[int, ...]
+    """Those that the seeds can't tell from the fastest, or that are as fast."""
+    flows: tuple[str, ...]
+    """All dataflows that have a result."""
+    seeds: int
+    """Those that the two have in common."""
     ceiling: float | None
     """T(best) / T(replicated), likewise; None where the replicated scene was not run."""
 
 
 def contests_of(points: Points) -> list[Contest]:
-    """One for each place where a dataflow has a result."""
+    """One for each case in which a dataflow has a result."""
     replicated = replicated_policies(points)
     contests = []
-    for place in points.places:
+    for place in points.cases:
         ran = [n for n in place if points.runs[n]]
         flows = [n for n in ran if points.profits[n]["policy"] not in replicated]
         ceilings = [n for n in ran if points.profits[n]["policy"] in replicated]
@@ -58,33 +69,38 @@ def replicated_policies(points: Points) -> set[str]:
     for number in scarce:
         if any(row["effective_fraction"] < 1 for row in points.runs[number]):
             titles.discard(points.profits[number]["policy"])
-    return titles | {CEILING}
+    named = {title for title, name in points.labels.items() if name == CEILING}
+    return titles | named | {CEILING}
 
 
 def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
     times = means(points, flows)
-    ranked = sorted(flows, key=lambda n: times[n])
-    best, second = ranked[0], ranked[1] if len(ranked) > 1 else None
-    ratios = makespan_ratios(points, second, best) if second is not None else []
-    low, high = (interval(ratios) if ratios else None) or (math.nan, math.nan)
+    best, *others = sorted(flows, key=lambda n: times[n])
+    ratios = {n: makespan_ratios(points, n, best) for n in others}
+    verdicts = {n: _verdict(of) for n, of in ratios.items()}
+    second = others[0] if others else None
+    lead = of_logarithms(ratios[second]) if second is not None else Spread.unknown()
     top = makespan_ratios(points, best, ceilings[0]) if ceilings else []
     return Contest(
         best,
         second,
-        fmean(ratios) if ratios else math.nan,
-        low,
-        high,
-        ALONE if second is None else _certainty(ratios, low),
-        fmean(top) if top else None,
+        lead.mean,
+        lead.low,
+        lead.high,
+        _certainty([*verdicts.values()]),
+        tuple(n for n, verdict in verdicts.items() if verdict in (UNSURE, EQUAL)),
+        tuple(points.flow(n) for n in (best, *others)),
+        len(ratios[second]) if second is not None else len(points.runs[best]),
+        of_logarithms(top).mean if top else None,
     )
 
 
 def means(points: Points, flows: list[int]) -> dict[int, float]:
-    """Mean makespans (ps) over the seeds that all have, or each its own where there are none."""
+    """Mean logarithms of makespans over the seeds that all have, or each its own without such."""
     seeds = [set(points.seeds[n]) for n in flows]
     common = set.intersection(*seeds) or set.union(*seeds)
     return {
-        n: fmean(row["makespan_ps"] for row in points.runs[n] if row["seed"] in common)
+        n: fmean(math.log(max(r["makespan_ps"], 1)) for r in points.runs[n] if r["seed"] in common)
         for n in flows
     }
 
@@ -95,9 +111,17 @@ def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
     return [ratio(upper["makespan_ps"], lower["makespan_ps"]) for upper, lower in both]
 
 
-def _certainty(ratios: list[float], low: float) -> str:
+def _verdict(ratios: list[float]) -> str:
+    """Whether one is slower than the fastest."""
     if ratios and all(value == 1 for value in ratios):
         return EQUAL
+    low = of_logarithms(ratios).low
     if math.isnan(low):
         return TOO_FEW_SEEDS
     return SURE if low > 1 else UNSURE
+
+
+def _certainty(verdicts: Sequence[str]) -> str:
+    """That of the least sure of all comparisons."""
+    order = (TOO_FEW_SEEDS, UNSURE, EQUAL, SURE)
+    return min(verdicts, key=order.index, default=ALONE)

@@ -1,0 +1,115 @@
+"""What a hook of the policy is shown: the view's fields, of those that it reads."""
+
+from __future__ import annotations
+
+from simmpp.common.compiled import kernel
+from simmpp.common.philox import philox
+from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, PACK, UNPACK, Row, Run
+from simmpp.engine.arrays.views import (
+    copy_costs,
+    holder_offsets,
+    miss_rows,
+    object_bytes,
+    owners,
+    peer_rows,
+    pes,
+    policy_views,
+    test_ps,
+    topology,
+)
+from simmpp.engine.network import flight_ps
+from simmpp.engine.pe.costs import copy_ps
+from simmpp.machine.messages import OBJECT as OBJECT_MESSAGE
+from simmpp.machine.messages import RAYS, REQUEST
+from simmpp.machine.topology import hops
+from simmpp.policy.view import LOADS, OBJECT, RANDOM, SELF, WAY, View
+
+
+@kernel
+def view_of(s: Run, me: int) -> View:
+    """The view of a PE."""
+    return policy_views(s)[me * s.remembers]
+
+
+@kernel
+def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) -> None:
+    """Show ``send`` a PE that waiting rays may go to."""
+    peer = peer_rows(s)[peer_row]
+    other, waiting = peer.key % s.processors, peer.sendable
+    view.load, view.other = pes(s)[me].load, other
+    view.waiting, view.unasked = waiting, 0
+    if s.send_reads & LOADS:
+        _show_load(s, view, peer, other, now_ps)
+    if s.send_reads & ~LOADS == 0:
+        return
+    if s.send_reads & OBJECT:
+        view.object, view.owner = NONE, NONE
+        view.object_bytes = view.test_ps = view.holders = view.requests = 0
+    if s.send_reads & WAY:
+        n_bytes = waiting * s.ray_bytes
+        view.hops = hops(topology(s), me, other)
+        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
+        view.receive_ps = s.receive_startup_ps + copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
+        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+    _show_self(s, view, me, now_ps, s.send_reads)
+
+
+@kernel
+def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int) -> None:
+    """Show ``ask`` an object that rays wait for."""
+    miss = miss_rows(s)[miss_row]
+    obj = miss.key % s.n_objects
+    other = owners(s)[obj]
+    view.load, view.other = pes(s)[me].load, other
+    view.waiting, view.unasked = miss.n, miss.unasked
+    if s.ask_reads == 0:
+        return
+    if s.ask_reads & LOADS:
+        _show_load(s, view, peer_rows(s)[miss.peer], other, now_ps)
+    if s.ask_reads & OBJECT:
+        view.object, view.owner, view.requests = obj, other, miss.requests
+        view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
+        view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
+    if s.ask_reads & WAY:
+        view.hops = hops(topology(s), me, other)
+        _show_fetch(s, view, me, other, object_bytes(s)[obj])
+    _show_self(s, view, me, now_ps, s.ask_reads)
+
+
+@kernel
+def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
+    """What a fetch costs the PE, and how long it takes besides."""
+    costs, request_bytes = copy_costs(s), s.request_bytes
+    view.send_ps = s.send_startup_ps + copy_ps(costs[PACK + REQUEST], request_bytes)
+    view.receive_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + OBJECT_MESSAGE], n_bytes)
+    there_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
+    back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
+    answer_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + REQUEST], request_bytes)
+    answer_ps += s.send_startup_ps + copy_ps(costs[PACK + OBJECT_MESSAGE], n_bytes)
+    view.flight_ps = there_ps + answer_ps + back_ps
+
+
+@kernel
+def _show_load(s: Run, view: View, peer: Row, other: int, now_ps: int) -> None:
+    """What this PE knows of the load of another, and how old that is."""
+    view.in_flight = peer.in_flight
+    if s.load_info == NO_INFO:
+        view.known_load, view.age_ps = NONE, now_ps
+    elif s.load_info == EXACT:
+        view.known_load, view.age_ps = pes(s)[other].settled_load, 0
+    elif peer.load == NONE:
+        view.known_load, view.age_ps = s.initial_load, now_ps
+    else:
+        view.known_load, view.age_ps = peer.load, now_ps - peer.heard_ps
+
+
+@kernel
+def _show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
+    """What a PE knows of itself, and what chance gives it."""
+    pe = pes(s)[me]
+    if groups & SELF:
+        view.now_ps, view.me = now_ps, me
+        view.ready, view.held_bytes = pe.n_ready, pe.held_bytes
+    if groups & RANDOM:
+        pe.draws += 1
+        view.random = philox(s.random_key, me, pe.draws)

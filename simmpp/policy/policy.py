@@ -1,0 +1,106 @@
+"""What a policy is: a few hooks, and what it says about when and with what they are asked.
+
+A hook is a plain function of a :class:`~simmpp.policy.view.View`. The oracle of the tests calls it
+as it is; the engines call it compiled, by its address: a new or changed policy needs no other code
+to be compiled again. One that a policy does not have costs nothing.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeVar
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.units import shown
+from simmpp.policy.view import WORDS, View
+
+Hook = Callable[[View], int]
+"""What it returns says the field of Policy that holds it."""
+Packing = Literal["none", "requests", "all"]
+"""What goes to one PE at one dispatch in one message: nothing, its requests, or everything."""
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+@dataclass(frozen=True, eq=False)
+class Policy:
+    """A policy; of its hooks None is one that it does not have."""
+
+    name: str
+    source: str = "one's own"
+    """Where the policy is described."""
+    send: Hook | None = None
+    """How many of the rays that wait may go to one PE now: 0 for none, ``v.waiting`` for all. The
+    engine takes the rays of whole objects, of those first that became sendable first, until it has
+    so many or more; True is 1."""
+    ask: Hook | None = None
+    """May one object, for which rays wait, be asked for now? 0 no, 1 its owner, 2 + PE that PE,
+    where the object is in memory for good; the owner if it isn't."""
+    batch: int | str = 1
+    """``send`` is asked when that many rays wait, or nothing else is to do: a count, or the name of
+    a number. So an engine need not look at every PE again and again."""
+    ask_at_least: int | str = 1
+    """The same of ``ask``."""
+    parameters: Mapping[str, int] = field(default_factory=dict)
+    """Numbers of its own, at most 8, with what they are unless users set them. Hooks read the first
+    as ``v.parameter[0]`` or by its name."""
+    all_resident: bool = False
+    """Every object is in the memory of every PE."""
+
+    def __post_init__(self) -> None:
+        for what, function in (("send", self.send), ("ask", self.ask)):
+            if function is not None:
+                _require_hook(f"policy {self.name!r}: {what}", function)
+        _require_numbers(self.name, self.parameters)
+
+    @property
+    def sends(self) -> bool:
+        """The policy has a hook that sends rays."""
+        return self.send is not None
+
+    @property
+    def asks(self) -> bool:
+        """The policy has a hook that asks for objects."""
+        return self.ask is not None
+
+    @property
+    def counts(self) -> tuple[int | str, int | str]:
+        """How many rays have to wait for the hooks to be asked."""
+        return (self.batch if self.sends else 1, self.ask_at_least if self.asks else 1)
+
+    @property
+    def packings(self) -> tuple[Packing, ...]:
+        """What the policy may pack: its requests, and rays with them if it sends any."""
+        if not self.asks:
+            return ("none",)
+        return ("none", "requests", "all") if self.sends else ("none", "requests")
+
+
+def hook(function: Function) -> Function:
+    """Mark a function as a hook; it stays as it is.
+
+    Raises ConfigError if it is not a function of one argument, the view.
+    """
+    _require_hook("hook", function)
+    return function
+
+
+def _require_hook(where: str, function: object) -> None:
+    if inspect.isfunction(function) and function.__code__.co_argcount == 1:
+        return
+    name = getattr(function, "__name__", shown(function))
+    raise ConfigError(f"{where}: value {name}: expected a function of one argument, the view")
+
+
+def _require_numbers(name: str, numbers: Mapping[str, int]) -> None:
+    where = f"policy {name!r}: parameters"
+    if len(numbers) > WORDS:
+        raise ConfigError(f"{where}: {len(numbers)} of them: expected at most {WORDS}")
+    for key, number in numbers.items():
+        if not key.isidentifier() or key in View.__annotations__:
+            raise ConfigError(
+                f"{where}: value {key!r}: expected a name that the view does not have"
+            )
+        if type(number) is not int or not -(1 << 63) <= number < 1 << 63:
+            raise ConfigError(f"{where}: {key}: value {shown(number)}: expected a 64-bit integer")

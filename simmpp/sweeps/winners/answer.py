@@ -1,0 +1,140 @@
+"""Who wins, in a sentence for those who have not read the paper; what it does not say follows.
+
+*Fastest* is the dataflow with the least mean makespan (geometric, over common seeds). The sentence
+claims a winner where the 95 % interval of its lead over each other dataflow lies above 1, or where
+one seed is all there is, and then says so. Where seeds can't tell, it names those between whom.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from simmpp.common.files import Row
+from simmpp.common.units import counted
+from simmpp.run import words
+from simmpp.sweeps.winners.contest import (
+    ALONE,
+    EQUAL,
+    SURE,
+    UNSURE,
+    Contest,
+    contests_of,
+)
+from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
+from simmpp.sweeps.winners.several import cases_of, few, told
+
+
+class Sentence(NamedTuple):
+    """Something that points of a sweep say."""
+
+    text: str
+    points: tuple[int, ...] = ()
+    """Their numbers."""
+
+
+def answer_of(
+    rows: Sequence[Row], further: Sequence[str] = (), labels: Mapping[str, str] = NO_LABELS
+) -> list[Sentence]:
+    """Who wins, then the ceiling and what failed.
+
+    ``rows`` are those of a ``results.csv``, with columns ``further`` of a sweep's keys; ``labels``
+    name the policy of each label.
+    """
+    return answer(points_of(rows, tuple(further), labels=labels))
+
+
+def answer(points: Points) -> list[Sentence]:
+    """The same of points."""
+    contests = contests_of(points)
+    if not contests:
+        return [Sentence("No point has a result.")]
+    texts = list(told(points, contests)) if len(contests) > 1 else [_one(points, contests[0])]
+    if all(contest.certainty == ALONE for contest in contests):
+        texts = [f"Only {_flows(contests)} was run: there is nothing to compare it with"]
+    lines = [Sentence(f"{text}.", tuple(cases_of(contests))) for text in texts]
+    return [*lines, *_absent(points, contests), *_ceiling(points, contests), *_failed(points)]
+
+
+def _flows(contests: Sequence[Contest]) -> str:
+    return words.any_of((flow for contest in contests for flow in contest.flows), "or")
+
+
+# --- one case ---
+
+
+def _one(points: Points, contest: Contest) -> str:
+    best, *rivals = (points.flow(n) for n in (contest.best, *contest.rivals))
+    longer, spread = words.times_as_long([contest.lead]), _spread(contest)
+    next_one = points.flow(contest.second) if contest.second is not None else ""
+    if contest.certainty == UNSURE:
+        those = words.any_of([best, *rivals])
+        return (
+            f"Seeds can't tell who is fastest, {those}: on average it is {best}, and {next_one} "
+            f"takes {longer} ({spread})"
+        )
+    if contest.certainty == EQUAL:
+        return f"{words.capital(words.any_of([best, *rivals], 'and'))} are equally fast, to the ps"
+    lead = f"the next, {next_one}, takes {longer}" if longer else ""
+    is_sure = contest.certainty == SURE
+    how_sure = f" ({spread})" if is_sure else f"; how sure that is, {few(contest.seeds)} can't tell"
+    return f"{points.taken(contest.best)} is fastest; {lead}{how_sure}"
+
+
+def _spread(contest: Contest) -> str:
+    """The interval of the lead."""
+    seeds = counted(contest.seeds, "seed")
+    if contest.low == contest.high:
+        return f"the same in all {seeds}"
+    ends = words.times_as_long([contest.low, contest.high])
+    return f"95 % interval {ends.removesuffix(' as long').removesuffix(' longer')}, {seeds}"
+
+
+# --- what else must be said ---
+
+
+def _absent(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
+    """Dataflows that take part in some of the cases only."""
+    counts = Counter(number for contest in contests for number in contest.flows)
+    for flow in sorted(counts):
+        if counts[flow] < len(contests):
+            missing = f"{len(contests) - counts[flow]} of {len(contests)} cases"
+            yield Sentence(f"{words.capital(flow)} has no result in {missing}.")
+
+
+def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
+    """The replicated scene: it has more memory than the dataflows, unless these hold all too."""
+    found = [contest for contest in contests if contest.ceiling is not None]
+    if not found:
+        return
+    held = [_held(points, contest.best) for contest in found]
+    scarce = [share for share in held if share < 1]
+    ratios = [1 / contest.ceiling for contest in found if contest.ceiling]
+    faster = sum(ratio > 1 for ratio in ratios)
+    text = f"the picture takes {words.span(ratios)} times as long as with the fastest dataflow"
+    if len(found) > 1 and faster:
+        text += f" (longer in {faster} of {len(found)} cases)"
+    if not scarce:
+        room = "every memory has room for the whole scene: held there (replicated, no dataflow)"
+    else:
+        where = "" if len(scarce) == len(found) else f" in {len(scarce)} of {len(found)} cases"
+        room = (
+            "The whole scene in every memory (replicated, no dataflow) is the ceiling, not a choice"
+            f"{where}: it does not fit, as it takes {words.span(1 / s for s in scarce)} times the "
+            "memory for objects that the dataflows have. With it"
+        )
+    yield Sentence(words.capital(f"{room} {text}."), tuple(cases_of(found)))
+
+
+def _held(points: Points, number: int) -> float:
+    """The share of the objects that are in a PE's memory for good."""
+    return min(row["effective_fraction"] for row in points.runs[number])
+
+
+def _failed(points: Points) -> Iterator[Sentence]:
+    missing = [n for n, runs in enumerate(points.runs) if not runs]
+    if missing:
+        names = words.any_of((points.flow(n) for n in missing), "and")
+        text = f"{len(missing)} of {counted(len(points.runs), 'point')} failed ({names})."
+        yield Sentence(text, tuple(missing))

@@ -1,0 +1,127 @@
+"""The cases of a sweep in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from simmpp.run import words
+from simmpp.sweeps.winners.contest import EQUAL, SURE, TOO_FEW_SEEDS, UNSURE, Contest
+from simmpp.sweeps.winners.points import Points
+from simmpp.sweeps.winners.regions import dividing_axes, extent, region
+
+MOSTLY = 0.75
+"""Share of the cases from which one winner is what one should take."""
+
+
+def told(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
+    """Who wins, where, by how much and how sure that is; then where nobody wins."""
+    won: dict[str, list[Contest]] = {}
+    for contest in contests:
+        if contest.certainty in (SURE, TOO_FEW_SEEDS):
+            won.setdefault(points.flow(contest.best), []).append(contest)
+    ranked = sorted(won.values(), key=len, reverse=True)
+    if ranked:
+        winners = ", ".join(_winners(points, ranked, contests))
+        yield "; ".join([winners, *_lead(points, [c for of in ranked for c in of])])
+    yield from _open(points, UNSURE, contests)
+    yield from _open(points, EQUAL, contests)
+
+
+def _winners(
+    points: Points, ranked: Sequence[Sequence[Contest]], contests: Sequence[Contest]
+) -> Iterator[str]:
+    """Who is fastest in how many cases, and where these lie; what to do, if that is one thing."""
+    first, *others = ranked
+    best = points.flow(first[0].best)
+    if _is_best_choice(points, best, first, contests):
+        beginning = points.taken(first[0].best)
+    elif others:
+        beginning = f"Who wins {_causes(points, ranked, contests)}: {best}"
+    else:
+        beginning = best
+    yield f"{beginning} is fastest in {_share(points, first, contests)}"
+    for won in others:
+        yield f"{points.flow(won[0].best)} in {len(won)}{_where(points, won, contests)}"
+
+
+def _is_best_choice(
+    points: Points, flow: str, won: Sequence[Contest], contests: Sequence[Contest]
+) -> bool:
+    """It wins mostly, or somewhere and nowhere is another known to be faster."""
+    lost = [c for c in contests if flow not in _foremost(points, c)]
+    return len(won) >= MOSTLY * len(contests) or not lost
+
+
+def _foremost(points: Points, contest: Contest) -> list[str]:
+    """The fastest, and those that seeds can't tell from it."""
+    return [points.flow(number) for number in (contest.best, *contest.rivals)]
+
+
+def _causes(
+    points: Points, ranked: Sequence[Sequence[Contest]], contests: Sequence[Contest]
+) -> str:
+    """What decides who wins: axes along which some winner has not all values."""
+    cases = cases_of(contests)
+    found = {name for won in ranked for name in dividing_axes(points, cases_of(won), cases)}
+    causes = [words.CAUSES.get(name, name) for name in points.axes if name in found]
+    return f"depends on {words.any_of(causes, 'and')}" if causes else "differs from case to case"
+
+
+def _share(points: Points, won: Sequence[Contest], contests: Sequence[Contest]) -> str:
+    """``"all 5 cases (4 to 64 PEs)"``, ``"3 of 5 cases (up to 16 PEs)"``."""
+    if len(won) < len(contests):
+        return f"{len(won)} of {len(contests)} cases{_where(points, won, contests)}"
+    number = "both" if len(contests) == 2 else f"all {len(contests)}"
+    return f"{number} cases{_aside(extent(points, cases_of(contests)))}"
+
+
+def _where(points: Points, some: Sequence[Contest], contests: Sequence[Contest]) -> str:
+    return _aside(region(points, cases_of(some), cases_of(contests)))
+
+
+def cases_of(contests: Sequence[Contest]) -> list[int]:
+    """Points that stand for the cases."""
+    return [contest.best for contest in contests]
+
+
+def _aside(text: str) -> str:
+    return f" ({text})" if text else ""
+
+
+def _lead(points: Points, won: Sequence[Contest]) -> Iterator[str]:
+    """Who comes next, by how much, and how sure that is."""
+    nexts = words.any_of(points.flow(c.second) for c in won if c.second is not None)
+    name = f", {nexts}," if " or " not in nexts else ""
+    longer = words.times_as_long(contest.lead for contest in won)
+    unsure = [contest for contest in won if contest.certainty == TOO_FEW_SEEDS]
+    if longer:
+        yield f"the next{name} takes {longer}" + ("" if unsure else _sure(won))
+    if unsure:
+        where = "" if len(unsure) == len(won) else f" in {len(unsure)} of them"
+        yield f"how sure that is{where}, {few(max(c.seeds for c in unsure))} can't tell"
+
+
+def _sure(won: Sequence[Contest]) -> str:
+    seeds = words.span(contest.seeds for contest in won)
+    return f", in each case beyond chance (95 % intervals, {seeds} seeds)"
+
+
+def _open(points: Points, certainty: str, contests: Sequence[Contest]) -> Iterator[str]:
+    """Where nobody wins, for seeds can't tell or two are equal."""
+    if not (some := [contest for contest in contests if contest.certainty == certainty]):
+        return
+    those = [name for contest in some for name in _foremost(points, contest)]
+    share = _share(points, some, contests)
+    if certainty == EQUAL:
+        yield f"In {share} {words.any_of(those, 'and')} are equally fast"
+    else:
+        longer = words.times_as_long(contest.lead for contest in some)
+        yield (
+            f"In {share} seeds can't tell who is fastest, {words.any_of(those)} "
+            f"(on average the next takes {longer})"
+        )
+
+
+def few(seeds: int) -> str:
+    """Who can't tell."""
+    return "one seed" if seeds == 1 else "these seeds"

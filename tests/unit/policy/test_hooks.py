@@ -1,0 +1,123 @@
+"""What the built-in hooks say, by conditions written down apart; compiled they say the same."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from itertools import product
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numba
+import numpy as np
+import pytest
+
+from simmpp.common.errors import ConfigError
+from simmpp.policy import Policy, hook
+from simmpp.policy.hooks import NUMBERS, VIEW, address_of, groups_read, names_in, reads
+from simmpp.policy.parameters import POLICIES
+from simmpp.policy.view import GROUPS, LOADS, OBJECT, RANDOM, SELF, WAY, View
+
+MIN_LOAD = 2
+NAMES = ("load", "waiting", "known_load")
+SEEN = [
+    dict(zip(NAMES, values, strict=True))
+    for values in product((0, 2, 3, 9), (1, 2, 3, 4, 5), (-1, 2, 3, 8))
+]
+Answer = Callable[[Any], int]
+
+SENDS: dict[str, Answer] = {
+    "ray": lambda v: int(v.waiting),
+    "concurrent": lambda v: int(v.waiting) * (v.load > MIN_LOAD and v.load > v.known_load),
+}
+ASKS: dict[str, Answer] = {"object": lambda v: 1, "concurrent": lambda v: 1}
+COUNTS = {
+    "object": (1, 1),
+    "ray": ("batch", 1),
+    "concurrent": ("batch", "ask_at_least"),
+    "replicated": (1, 1),
+}
+
+
+def view(**seen: int) -> View:
+    return cast(View, SimpleNamespace(**seen, min_load=MIN_LOAD))
+
+
+def compiled(hook: Any, names: tuple[str, ...] = (), **shown: Any) -> int:
+    """What the machine code of a hook says."""
+    record = np.zeros(1, VIEW)
+    for name, value in shown.items():
+        record[name] = value
+    code = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)(address_of(hook, names))
+    return int(code(record.ctypes.data))
+
+
+@pytest.mark.parametrize("name", POLICIES)
+def test_hooks_say_what_their_names_promise(name: str) -> None:
+    policy = POLICIES[name]
+    for function, answer in ((policy.send, SENDS), (policy.ask, ASKS)):
+        assert (function is not None) == (name in answer)
+        for seen in SEEN if function is not None else ():
+            expected = answer[name](view(**seen))
+            assert function is not None
+            assert function(view(**seen)) == expected, seen
+            assert compiled(function, **seen, min_load=MIN_LOAD) == expected, seen
+    assert policy.counts == COUNTS[name]
+
+
+def test_the_view_has_all_numbers_of_a_policy_and_no_field_in_two_groups() -> None:
+    assert NUMBERS == ("min_load", "batch", "ask_at_least")
+    assert VIEW.names == (*View.__annotations__,)
+    fields = [name for names in GROUPS.values() for name in names]
+    assert len(set(fields)) == len(fields)
+    assert set(fields) < set(VIEW.names or ())
+
+
+@hook
+def by_number(v: View) -> int:
+    v.memory[3] += v.parameter[1]
+    return v.second * 10 + v.memory[3]
+
+
+def test_numbers_of_its_own_have_names_and_memory_is_written() -> None:
+    assert compiled(by_number, ("first", "second"), parameter=[4, 5, *[0] * 6]) == 55
+
+
+@numba.njit
+def helper(v: View) -> int:
+    return v.known_load
+
+
+def calls_another(v: View) -> int:
+    return helper(v) + v.hops
+
+
+def in_a_lambda(v: View) -> int:
+    return (lambda: v.random)()
+
+
+def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
+    assert names_in(calls_another) >= {"known_load", "hops"}
+    assert groups_read(calls_another) == LOADS | WAY
+    assert groups_read(in_a_lambda) == RANDOM
+    assert groups_read(None) == groups_read(POLICIES["ray"].send) == 0
+    assert groups_read(lambda v: v.object + v.now_ps) == OBJECT | SELF
+    assert reads(POLICIES["concurrent"], "known_load")
+    assert not reads(POLICIES["concurrent"], "hops")
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"send": 3}, "send: value 3: expected a function of one argument"),
+        ({"ask": lambda: 1}, "expected a function of one argument"),
+        ({"parameters": {"a b": 1}}, "expected a name that the view does not have"),
+        ({"parameters": {"load": 1}}, "expected a name that the view does not have"),
+        ({"parameters": {"x": 1.5}}, "x: value 1.5: expected a 64-bit integer"),
+        ({"parameters": {"x": 1 << 63}}, "expected a 64-bit integer"),
+        ({"parameters": {f"x{n}": n for n in range(9)}}, "9 of them: expected at most 8"),
+    ],
+)
+def test_what_is_no_policy_is_refused(changes: dict[str, Any], expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
+        Policy("own", **changes)

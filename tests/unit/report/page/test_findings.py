@@ -1,0 +1,51 @@
+"""What a page says in a table and in sentences besides who wins: by hand."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from sweep_rows import failed, timed
+
+from simmpp.common.files import Row
+from simmpp.report.page.findings import sentences, wins
+from simmpp.run import words
+from simmpp.sweeps.winners.points import points_of
+
+
+def at(fraction: float, *of: tuple[str, tuple[int, ...]]) -> list[Row]:
+    return [r for policy, t in of for r in timed(policy, *t, fraction=fraction)]
+
+
+def test_neighbours_with_one_winner_are_one_line() -> None:
+    rows = at(0.1, ("object", (300, 301)), ("ray", (100, 100)))
+    rows += at(0.2, ("object", (200, 201)), ("ray", (100, 100)))
+    rows += at(0.4, ("object", (100, 100)), ("ray", (110, 130)))
+    rows += at(0.8, ("object", (303, 302)), ("ray", (100, 100)))
+    rows += at(1.0, ("object", (100, 100)), ("ray", (100, 100)))
+    found = wins(points_of(rows, ()))
+    assert [(w.winner, w.where, w.places) for w in found] == [
+        ("ray", "10 % to 20 %, 80 %", 3),
+        ("object", "40 %", 1),
+        ("object = ray", "100 %", 1),
+    ]
+    assert found[0].profit == "2 to 3.02"
+    assert found[0].lead == "100 to 202 % over object"
+    assert [w.sure for w in found] == [
+        "beyond the 95 % interval at each",
+        "no difference that these seeds can show",
+        "equal in every seed",
+    ]
+
+
+def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
+    for rows in ([failed()], []):
+        assert [s.text for s in sentences(points_of(rows, ()))] == ["No point has a result."]
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [((1.0, 1.7123), "1 to 1.71"), ((2.0001, 2.0), "2"), ((), ""), ((1, math.inf), "1 to inf")],
+)
+def test_spans(values: tuple[float, ...], text: str) -> None:
+    assert words.span(values) == text
