@@ -7,7 +7,7 @@ from math import prod
 
 import numpy as np
 import pytest
-from builders import random_case
+from builders import on_some_network, random_case
 from by_hand import MACHINE
 from oracles.hop_by_hop import HopByHop, Sent
 from oracles.machine import Simulation
@@ -34,7 +34,8 @@ def random_traffic(seed: int) -> tuple[Machine, list[Sent]]:
     latencies = {"latency_ps": int(rng.integers(50)), "hop_latency_ps": int(rng.integers(40))}
     if rng.random() < 0.2:
         latencies = {"latency_ps": 0, "hop_latency_ps": 0}
-    return replace(MACHINE, shape=shape, **latencies), sorted(traffic)
+    machine = replace(MACHINE, shape=shape, **latencies)
+    return on_some_network(machine, seed), sorted(traffic)
 
 
 @pytest.mark.parametrize("first_seed", range(0, 400, 100))
