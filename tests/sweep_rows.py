@@ -13,6 +13,8 @@ from simmpp.run.rows import RESULTS, in_order
 
 SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
 """Of a policy; others are as fast as object dataflow."""
+HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
+"""A label that harms a page which doesn't escape it."""
 
 
 def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:

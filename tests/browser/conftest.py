@@ -1,4 +1,4 @@
-"""A real browser, which opens pages from disk and may ask nobody for anything."""
+"""A real browser, which opens pages from disk and may ask nobody for anything; the pages."""
 
 from __future__ import annotations
 
@@ -7,9 +7,17 @@ import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
+from sweep_rows import HOSTILE, failed, row, sweep, written
+
+from simmpp.common.files import Row, write_csv
+from simmpp.report.page.comparison import write_comparison
+from simmpp.report.page.difference import difference_of
+from simmpp.report.page.folder import read_folder
+from simmpp.report.page.report import report_of, write_page
+from simmpp.studies.bench.errors import bench_columns
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -23,6 +31,13 @@ QUIET = (
     "--disable-component-update",
     "--disable-sync",
 )
+POLICIES = ("object", "ray", "concurrent", "replicated", HOSTILE)
+AXES: dict[str, Any] = {
+    "scene": ["mountain:4", "<i>scene</i>"],
+    "processors": [8, 64],
+    "fraction": [0.05, 0.1, 0.5, 1.0],
+}
+REPRODUCED = Path(__file__).parents[2] / "experiments" / "nebel98" / "plain"
 SCREENSHOTS = "SIMMPP_SCREENSHOTS"
 """Environment variable: a folder for what the pages look like."""
 
@@ -45,6 +60,13 @@ class Opened:
         for chart in self.page.locator(".chart").all():
             chart.scroll_into_view_if_needed()
             chart.locator(".main-svg").first.wait_for()
+
+    def violations(self) -> list[str]:
+        """What axe finds: rules of accessibility that the page breaks, and where."""
+        from axe_playwright_python.sync_playwright import Axe
+
+        found = Axe().run(self.page).response["violations"]
+        return [f"{rule['id']}: {node['html']}" for rule in found for node in rule["nodes"]]
 
     def keep(self, name: str) -> None:
         """Take a picture of it, if a folder is given."""
@@ -95,3 +117,65 @@ def opened(browser: Browser) -> Iterator[Opener]:
         assert [url for url in made.asked if not url.startswith(allowed)] == []
         assert made.said == []
         made.page.context.close()
+
+
+def page_of(folder: Path) -> Path:
+    return write_page(report_of(read_folder(folder)))
+
+
+@pytest.fixture(scope="session")
+def rows() -> list[Row]:
+    return [*sweep(POLICIES, **AXES), failed("late", 0)]
+
+
+@pytest.fixture(scope="session")
+def report(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
+    return page_of(written(tmp_path_factory.mktemp("sweep"), rows))
+
+
+@pytest.fixture(scope="session")
+def comparison(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
+    base = tmp_path_factory.mktemp("compared")
+    slower = [r | {"makespan_ps": r["makespan_ps"] + 10**9} if not r["error"] else r for r in rows]
+    before, after = (
+        read_folder(written(base / name, each))
+        for name, each in (("before", rows), ("after", slower[:-40]))
+    )
+    page = base / "compare.html"
+    write_comparison(before, after, difference_of(before, after), page)
+    return page
+
+
+@pytest.fixture(scope="session")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One seed at one place, and pictures of it."""
+    folder = written(tmp_path_factory.mktemp("run"), [row(policy) for policy in POLICIES[:4]])
+    pictures = Path(__file__).parents[2] / "experiments" / "motion"
+    (folder / "figures").mkdir()
+    for name in ("concurrent-activity.png", "concurrent-progress.png"):
+        shutil.copy(pictures / name, folder / "figures")
+    return page_of(folder)
+
+
+@pytest.fixture(scope="session")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    keys = ("scene", "processors", "fraction")
+    measured = [
+        dict.fromkeys(bench_columns(keys), 0.1 / seeds)
+        | {"scene": "tetra:5", "processors": 64, "fraction": x, "policy": "concurrent"}
+        | {"method": "simulate", "seeds": seeds, "groups": 2, "reference_seeds": 32 - seeds}
+        for seeds in (1, 2, 4)
+        for x in (0.1, 0.5)
+    ]
+    folder = tmp_path_factory.mktemp("bench")
+    write_csv(measured, bench_columns(keys), folder / "bench.csv")
+    return page_of(folder)
+
+
+@pytest.fixture(scope="session")
+def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The paper's claims, and the rows of one of its figures."""
+    folder = tmp_path_factory.mktemp("reproduction")
+    for name in ("claims.csv", "figure2.csv", "rings7.csv"):
+        shutil.copy(REPRODUCED / name, folder)
+    return page_of(folder)

@@ -7,54 +7,22 @@ from typing import Any
 from urllib.parse import unquote
 
 import pytest
-from sweep_rows import failed, sweep, written
+from sweep_rows import HOSTILE, written
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.report.page.comparison import write_comparison
-from simmpp.report.page.difference import difference_of
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.report import report_of, write_page
 from simmpp.run import words
 from simmpp.sweeps.winners.points import Points, points_of
 
-HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
-POLICIES = ("object", "ray", "concurrent", "replicated", HOSTILE)
-AXES: dict[str, Any] = {
-    "scene": ["mountain:4", "<i>scene</i>"],
-    "processors": [8, 64],
-    "fraction": [0.05, 0.1, 0.5, 1.0],
-}
-LOOKS = [(390, "light"), (390, "dark"), (1600, "light"), (1600, "dark")]
+PAGES = ["report", "run", "bench", "reproduction", "comparison"]
+LOOKS = [(400, "light"), (400, "dark"), (1400, "light"), (1400, "dark")]
 BACKGROUND = {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 24, 29)"}
 
 
-@pytest.fixture(scope="module")
-def rows() -> list[Row]:
-    return [*sweep(POLICIES, **AXES), failed("late", 0)]
-
-
-@pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
-    folder = written(tmp_path_factory.mktemp("sweep"), rows)
-    return write_page(report_of(read_folder(folder)))
-
-
-@pytest.fixture(scope="module")
-def comparison(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
-    base = tmp_path_factory.mktemp("compared")
-    slower = [r | {"makespan_ps": r["makespan_ps"] + 10**9} if not r["error"] else r for r in rows]
-    before, after = (
-        read_folder(written(base / name, each))
-        for name, each in (("before", rows), ("after", slower[:-40]))
-    )
-    page = base / "compare.html"
-    write_comparison(before, after, difference_of(before, after), page)
-    return page
-
-
 @pytest.mark.parametrize(("width", "theme"), LOOKS)
-@pytest.mark.parametrize("name", ["report", "comparison"])
+@pytest.mark.parametrize("name", PAGES)
 def test_a_page_fits_its_window_in_both_themes(
     opened: Any, request: pytest.FixtureRequest, name: str, width: int, theme: str
 ) -> None:
@@ -62,6 +30,7 @@ def test_a_page_fits_its_window_in_both_themes(
     found = opened(request.getfixturevalue(name), width, theme)
     found.draw_all()
     assert found.width_beyond_window() == 0
+    assert found.violations() == []
     colour = found.page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert colour == BACKGROUND[theme]
     assert len(found.asked) == 1

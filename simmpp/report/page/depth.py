@@ -26,6 +26,17 @@ def depth_of(points: Points) -> dict[str, Any]:
     packed = [name for name in PACKED if rows and name in rows[0][1]]
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
+        "values": {
+            words.SHORT.get(name, name): [
+                words.value(name, profits[numbers[0]][name]) for numbers in points.places
+            ]
+            for name in points.axes
+        },
+        "keys": {
+            name: _column((profits[numbers[0]] for numbers in points.places), name)
+            for name in (*KEY_AXES, *points.further)
+        },
+        "titles": titles,
         "policies": [words.policy(title) for title in titles],
         "styles": [style % N_COLOURS for style in styles_of(profits).values()],
         "accounts": dict(ACCOUNTS),

@@ -11,7 +11,6 @@ from typing import Any
 
 from simmpp.common.files import write_text
 from simmpp.common.folders import is_at_work
-from simmpp.common.units import counted
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
@@ -20,6 +19,7 @@ from simmpp.report.page.figures.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.origin import facts, origin
+from simmpp.report.page.standing import standing_of, warnings_of
 from simmpp.report.page.template import rendered
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
@@ -97,8 +97,8 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
     return {
         "title": folder.path.resolve().name or "report",
         "facts": facts(folder),
-        "live": _progress(folder) if is_running else "",
-        "warning": _warning(folder),
+        "live": f"running: {standing_of(folder).progress}" if is_running else "",
+        "warnings": warnings_of(folder, is_followed=is_running),
         "sentences": sentences(points) if folder.rows or not folder.bench else [],
         "wins": wins(points),
         "along": {"policy": "", "fraction": "x"}.get(along, along),
@@ -115,20 +115,6 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
     }
 
 
-def _progress(folder: Folder) -> str:
-    failed = f", {len(folder.failed)} failed" if folder.failed else ""
-    return f"running: {len(folder.rows)} of {counted(folder.planned, 'row')} done{failed}"
-
-
-def _warning(folder: Folder) -> str:
-    if not folder.failed:
-        return ""
-    errors = dict.fromkeys(str(row["error"]) for row in folder.failed)
-    first = next(iter(errors))
-    more = f" (and {counted(len(errors) - 1, 'other error')})" if len(errors) > 1 else ""
-    return f"{counted(len(folder.failed), 'row')} failed: {first}{more}"
-
-
 def _verdicts(folder: Folder) -> str:
     """How many claims hold, in part, and do not."""
     counts = Counter(claim["holds"] for claim in folder.claims)
@@ -143,7 +129,7 @@ def _verdicts(folder: Folder) -> str:
 
 def _sections(report: Report, others: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     claims = [("claims", "Claims")] if report.folder.claims else []  # what a reproduction is for
-    depth = [("point", "One point")] if any(report.points.runs) else []
+    depth = [("point", "One point"), ("rows", "All points")] if any(report.points.runs) else []
     groups = [(group.id, group.name) for group in report.groups]
     return [*claims, ("summary", "Summary"), *groups, *depth, *others, ("made", "How it was made")]
 

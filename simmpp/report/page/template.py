@@ -9,6 +9,7 @@ import jinja2
 from markupsafe import Markup
 
 from simmpp.plot.plotly_panels import script
+from simmpp.report.page.glossary import glossary
 
 ASSETS = "assets"
 
@@ -30,4 +31,5 @@ def rendered(template: str, values: Mapping[str, Any]) -> str:
     def asset(name: str) -> Markup:  # our own styles and scripts, which escaping would break
         return Markup(environment.get_template(name).render())
 
-    return environment.get_template(template).render(**values, asset=asset, plotly=Markup(script()))
+    given = {"asset": asset, "plotly": Markup(script()), "glossary": glossary()}
+    return environment.get_template(template).render(**values, **given)

@@ -51,10 +51,11 @@
   ];
 
   const comparison = (numbers, chosen) => {
-    const head = made("tr", {}, made("th", {}, ""), ...numbers.map((n) => made("th", { class: n === chosen ? "n chosen" : "n", scope: "col" }, depth.policies[points.policy[n]])));
+    const head = made("tr", {}, made("td"), ...numbers.map((n) => made("th", { class: n === chosen ? "n chosen" : "n", scope: "col" }, depth.policies[points.policy[n]])));
     const lines = MEASURES.map(([name, cell]) => made("tr", {}, made("th", { scope: "row" }, name),
       ...numbers.map((n) => made("td", { class: n === chosen ? "n chosen" : "n" }, cell(n)))));
     find("point-policies").replaceChildren(made("thead", {}, head), made("tbody", {}, ...lines));
+    window.simmpp.explain?.(find("point-policies"));
   };
   const ownRows = (number) => {
     const columns = Object.keys(rows).filter((name) => name !== "point");
@@ -87,6 +88,7 @@
   };
   const kinds = (numbers) => Object.fromEntries(Object.entries(depth.kinds).map(([part, column]) => [part, numbers.map((n) => mean(n, column) || 0)]));
 
+  const titled = (number) => `${depth.places[points.place[number]]}: ${depth.policies[points.policy[number]]}`;
   const place = find("place"), policy = find("policy");
   let current = null;
   // The address names the point by its keys: numbers change while a sweep grows.
@@ -97,7 +99,7 @@
     place.selectedIndex = at;
     policy.replaceChildren(...numbers.map((n) => made("option", { value: n }, depth.policies[points.policy[n]])));
     policy.value = String(number);
-    find("point-title").textContent = `${depth.places[at]}: ${depth.policies[points.policy[number]]}`;
+    find("point-title").textContent = titled(number);
     comparison(numbers, number);
     stacked("point-accounts", numbers, shares(numbers), "Shares of the time of all PEs");
     stacked("point-messages", numbers, kinds(numbers), "Messages by kind");
@@ -117,7 +119,10 @@
     remember();
   });
   document.addEventListener("chosen", (event) => choose(event.detail, true));
-  const asked = location.hash.startsWith("#point=") ? points.name.indexOf(decodeURIComponent(location.hash.slice(7))) : -1;
+  const named = () => (location.hash.startsWith("#point=") ? points.name.indexOf(decodeURIComponent(location.hash.slice(7))) : -1);
+  addEventListener("hashchange", () => { if (named() >= 0) choose(named(), true); });
+  const asked = named();
   choose(asked < 0 ? data.first : asked);
   if (asked >= 0 && !data.live) find("point").scrollIntoView();
+  Object.assign(window.simmpp, { measures: MEASURES, titled });
 })();
