@@ -11,10 +11,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 from simmpp.machine.machine import (
+    LEVELS,
     TOPOLOGY_NAMES,
     TORUS,
     UNLIMITED,
     CopyCost,
+    FatTree,
     Level,
     Machine,
     TestCost,
@@ -213,7 +215,11 @@ def on_some_network(machine: Machine, seed: int) -> Machine:
     if topology == TORUS:
         return machine
     machine = replace(machine, topology=topology, shape=(machine.processors, 1, 1))
-    return replace(machine, levels=_levels(rng, machine))
+    if topology == LEVELS:
+        return replace(machine, levels=_levels(rng, machine))
+    arity = int(rng.integers(2, 5))
+    ratios = [ratio for ratio in range(1, arity + 1) if arity % ratio == 0]
+    return replace(machine, fat_tree=FatTree(arity, int(rng.choice((0, 4))), _pick(rng, ratios)))
 
 
 def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:

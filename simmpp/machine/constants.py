@@ -18,7 +18,16 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import TIME
 from simmpp.common.strict import Expect, Short, Strict, parsed_by
 from simmpp.common.units import A_TIME, picoseconds, shown
-from simmpp.machine.machine import MOST_LEVELS, Copies, CopyCost, Level, Levels, Machine, TestCost
+from simmpp.machine.machine import (
+    MOST_LEVELS,
+    Copies,
+    CopyCost,
+    FatTree,
+    Level,
+    Levels,
+    Machine,
+    TestCost,
+)
 from simmpp.machine.messages import MESSAGE_KINDS
 
 OTHERS = ("name", "sources")
@@ -88,6 +97,9 @@ _of_kinds: dict[str, Any] = {
 }
 CopiesConstants: Any = create_model("CopiesConstants", __base__=CopyConstants, **_of_kinds)
 TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_fields(TestCost, {}))
+FatTreeConstants: Any = create_model(
+    "FatTreeConstants", __base__=Strict, **optional_fields(FatTree, {})
+)
 LevelConstants: Any = create_model("LevelConstants", __base__=Strict, **optional_fields(Level, {}))
 _NESTED = {
     Copies: (CopiesConstants, CopiesConstants()),
@@ -99,6 +111,7 @@ _NESTED = {
         Annotated[dict[str, LevelConstants] | None, parsed_by(named_levels), Expect(_LEVELS)],
         None,
     ),
+    FatTree: (FatTreeConstants | None, None),
 }
 _All: Any = create_model("_All", __base__=Strict, **optional_fields(Machine, _NESTED))
 
@@ -148,8 +161,8 @@ def _arguments(cls: Any, numbers: Mapping[str, int], prefix: str) -> dict[str, A
         elif hint == Copies:
             kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in MESSAGE_KINDS)
             arguments[name] = tuple(CopyCost(**kind) for kind in kinds)
-        elif hint is TestCost:
-            arguments[name] = TestCost(**_arguments(TestCost, numbers, f"{key}."))
+        elif hint in (TestCost, FatTree):
+            arguments[name] = hint(**_arguments(hint, numbers, f"{key}."))
     return arguments
 
 

@@ -6,11 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.strict import in_words
 from simmpp.machine.constants import Constants
-from simmpp.machine.machine import LEVELS, TORUS, Level
+from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Level
 from simmpp.machine.transfer import slower
 
-_BELONGS = {"shape": (TORUS,), "hop_latency": (TORUS,), "levels": (LEVELS,)}
+_BELONGS = {
+    "shape": (TORUS,),
+    "hop_latency": (TORUS, FAT_TREE),
+    "levels": (LEVELS,),
+    "fat_tree": (FAT_TREE,),
+}
 """Keys that mean something with these topologies only."""
 
 
@@ -45,7 +51,8 @@ class Layers:
         topology = self.words["topology"]
         for key, topologies in _BELONGS.items():
             if getattr(constants, key) is not None and topology not in topologies:
-                problem = f"it goes with topology {topologies[0]}, and this machine's is {topology}"
+                known = in_words(topologies)
+                problem = f"it goes with topology {known}, and this machine's is {topology}"
                 raise ConfigError(problem, where=key)
 
     def levels(self) -> tuple[Level, ...]:
@@ -75,4 +82,4 @@ class Layers:
 
 def implied(constants: Constants) -> str | None:
     """The topology that constants speak of without its name."""
-    return LEVELS if constants.levels else None
+    return LEVELS if constants.levels else FAT_TREE if constants.fat_tree else None

@@ -148,6 +148,12 @@ def level_of(network: Network, source: int, destination: int) -> int:
 
 
 @kernel
+def hops(network: Network, source: int, destination: int) -> int:
+    """The level that a message goes out to, from 1."""
+    return 0 if source == destination else 1 + level_of(network, source, destination)
+
+
+@kernel
 def latency_ps(network: Network, source: int, destination: int) -> int:
     """What the head of a message takes where it does not wait."""
     return network[level_of(network, source, destination) * _EACH + _LATENCY]

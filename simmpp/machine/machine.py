@@ -39,7 +39,7 @@ _THREE = {"type": "array", "items": _SIDES, "minItems": 3, "maxItems": 3}
 Shape = Annotated[tuple[int, int, int], *only(is_shape, Expect(_SHAPE, _THREE, "PEs"))]
 
 
-TORUS, LEVELS = TOPOLOGY_NAMES = ("torus", "levels")
+TORUS, LEVELS, FAT_TREE = TOPOLOGY_NAMES = ("torus", "levels", "fat-tree")
 MOST_LEVELS = 16
 
 
@@ -63,6 +63,19 @@ class Level:
     ports: Annotated[int, *integer(1, MOST_PROCESSORS, "ports")] = 1
     """With contention: ways out, and in, of each block of the level below; its PE i has number i
     mod ports. A PE has one."""
+
+
+@documented
+@dataclass(frozen=True)
+class FatTree:
+    """How many switches of which kind a fat-tree has."""
+
+    arity: Annotated[int, *integer(2, MOST_PROCESSORS, "links")] = 0
+    """Links down from each switch."""
+    levels: Annotated[int, *integer(1, MOST_LEVELS, "levels")] = 0
+    """Of switches, as few as join all PEs when not given."""
+    oversubscription: Annotated[int, *integer(1, MOST_PROCESSORS)] = 1
+    """Links down for each link up, at every switch below the top; a divisor of the arity."""
 
 
 @documented
@@ -155,10 +168,12 @@ class Machine:
     quantum: Annotated[int, *integer(1, 2**31 - 1, "tests")]
     """Tests that a PE computes at most before it looks into its inbox."""
     topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
-    """How PEs are joined: the one that `levels` says where these are given, else the
+    """How PEs are joined: the way that `levels` or `fat_tree` says where one is given, else the
     preset's."""
     levels: Levels = ()
     """Blocks of PEs in larger blocks, the innermost first, each by a name of one's own."""
+    fat_tree: FatTree = FatTree()
+    """Switches of the fat-tree; its links have the machine's bandwidth and hop latency."""
     port_gap_ps: Time = 0
     """With contention: a message keeps the ports of its PEs busy for that long at least."""
     contention: Literal["none", "links"] = "none"

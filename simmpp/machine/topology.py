@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel
 from simmpp.common.errors import ConfigError
 from simmpp.common.validate import require_word
-from simmpp.machine import levels, torus
-from simmpp.machine.machine import LEVELS, TORUS, Machine
+from simmpp.machine import fat_tree, levels, torus
+from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Machine
 
 Network = NDArray[np.int64]
 """A topology as compiled code gets it: (n,) int64, its number in TOPOLOGIES and its own numbers."""
@@ -59,8 +59,9 @@ class Topology(Protocol):
 TOPOLOGIES: dict[str, Callable[[Machine], Topology]] = {
     TORUS: torus.Torus.of,
     LEVELS: levels.Blocks.of,
+    FAT_TREE: fat_tree.Tree.of,
 }
-_TORUS, _LEVELS = range(len(TOPOLOGIES))
+_TORUS, _LEVELS, _FAT_TREE = range(len(TOPOLOGIES))
 
 
 def topology_of(machine: Machine) -> Topology:
@@ -81,7 +82,7 @@ def require_torus(machine: Machine) -> None:
 
 def network_of(topology: Topology) -> Network:
     """The same for compiled code."""
-    kinds = {torus.Torus: _TORUS, levels.Blocks: _LEVELS}
+    kinds = {torus.Torus: _TORUS, levels.Blocks: _LEVELS, fat_tree.Tree: _FAT_TREE}
     return np.array([kinds[type(topology)], *topology.numbers], np.int64)
 
 
@@ -90,7 +91,9 @@ def hops(network: Network, source: int, destination: int) -> int:
     """How far it is: links that a message crosses, or the level that it goes out to."""
     if network[0] == _TORUS:
         return torus.hops(network[1], network[2], network[3], source, destination)
-    return 0 if source == destination else 1 + levels.level_of(network, source, destination)
+    if network[0] == _LEVELS:
+        return levels.hops(network, source, destination)
+    return fat_tree.hops(network, source, destination)
 
 
 @kernel
@@ -99,7 +102,9 @@ def latency_ps(network: Network, source: int, destination: int) -> int:
     if network[0] == _TORUS:
         n_hops = torus.hops(network[1], network[2], network[3], source, destination)
         return network[4] + n_hops * network[5]
-    return levels.latency_ps(network, source, destination)
+    if network[0] == _LEVELS:
+        return levels.latency_ps(network, source, destination)
+    return network[1] + fat_tree.hops(network, source, destination) * network[2]
 
 
 @kernel
@@ -107,7 +112,9 @@ def bytes_per_s(network: Network, source: int, destination: int) -> int:
     """Bandwidth from one PE to another."""
     if network[0] == _TORUS:
         return network[6]
-    return levels.bytes_per_s(network, source, destination)
+    if network[0] == _LEVELS:
+        return levels.bytes_per_s(network, source, destination)
+    return network[3]
 
 
 @kernel
@@ -121,7 +128,9 @@ def held_ps(network: Network, n_bytes: int, busy_ps: int) -> int:
     """How long a message keeps the port of a PE busy; ``busy_ps`` is what its bytes take."""
     if network[0] == _TORUS:
         return max(network[7], busy_ps)
-    return levels.held_ps(network, 0, n_bytes)
+    if network[0] == _LEVELS:
+        return levels.held_ps(network, 0, n_bytes)
+    return max(network[4], busy_ps)
 
 
 @kernel
@@ -133,7 +142,9 @@ def enter(network: Network, source: int, destination: int) -> tuple[int, int]:
     """
     if network[0] == _TORUS:
         return source, network[4]
-    return levels.enter(network, source, destination)
+    if network[0] == _LEVELS:
+        return levels.enter(network, source, destination)
+    return fat_tree.enter(network, source, destination)
 
 
 @kernel
@@ -145,4 +156,7 @@ def next_link(
     if network[0] == _TORUS:
         link, there = torus.link_towards((network[1], network[2], network[3]), here, destination)
         return link, there, busy_ps, network[5]
-    return levels.next_port(network, source, here, destination, n_bytes)
+    if network[0] == _LEVELS:
+        return levels.next_port(network, source, here, destination, n_bytes)
+    link, there, behind_ps = fat_tree.next_link(network, source, here, destination)
+    return link, there, busy_ps, behind_ps

@@ -22,6 +22,12 @@ def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
     return floor(Fraction(n_bytes * PS_PER_S, bytes_per_s) + Fraction(1, 2))
 
 
+def slowest(machine: Machine) -> int:
+    """The bandwidth of links and ports that are all alike."""
+    limits = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    return min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
+
+
 def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
     """Time to pack or unpack one message."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)

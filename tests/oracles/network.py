@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 
-from oracles import blocks
-from oracles.costs import Stage, hops_from, transfer_ps
+from oracles import blocks, tree
+from oracles.costs import Stage, hops_from, slowest, transfer_ps
 from oracles.state import Message
-from simmpp.machine.machine import UNLIMITED, Machine
+from simmpp.machine.machine import Machine
 
 Way = list[tuple[str, ...]]
 
@@ -46,13 +46,7 @@ def torus_way(machine: Machine, source: int, destination: int, n_bytes: int) -> 
     return [(("injection", str(source)), at_port_ps, 0), *stages, ejection]
 
 
-def slowest(machine: Machine) -> int:
-    """The bandwidth of links and ports that are all alike."""
-    limits = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
-    return min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
-
-
-WAYS = {"torus": torus_way, "levels": blocks.way}
+WAYS = {"torus": torus_way, "levels": blocks.way, "fat-tree": tree.way}
 """All that a message takes on its way, by topology."""
 
 
@@ -60,7 +54,8 @@ def distance(machine: Machine, source: int, destination: int) -> int:
     """Links between two PEs, or levels."""
     if machine.topology == "torus":
         return hops_from(machine.shape, source)[destination]
-    return blocks.distance(machine, source, destination)
+    of = {"levels": blocks.distance, "fat-tree": tree.distance}[machine.topology]
+    return of(machine, source, destination)
 
 
 def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:
