@@ -219,7 +219,7 @@ def on_some_network(machine: Machine, seed: int) -> Machine:
         return replace(machine, levels=_levels(rng, machine))
     arity = int(rng.integers(2, 5))
     ratios = [ratio for ratio in range(1, arity + 1) if arity % ratio == 0]
-    return replace(machine, fat_tree=FatTree(arity, int(rng.choice((0, 4))), _pick(rng, ratios)))
+    return replace(machine, fat_tree=FatTree(arity, int(rng.choice((0, 6))), _pick(rng, ratios)))
 
 
 def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:

@@ -110,6 +110,18 @@ MISTAKES = [
     ({"levels": {"a": {}}, "hop_latency": "1 ns"}, "machine.hop_latency: it goes with topology"),
     ({"levels": {"a": {}}, "topology": "torus"}, "machine.levels: it goes with topology levels"),
     ({"topology": "levels"}, "machine.levels: expected at least one level"),
+    ({"fat_tree": {}}, "machine.fat_tree: missing key 'arity'"),
+    ({"topology": "fat-tree"}, "machine.fat_tree: missing key 'arity'"),
+    ({"fat_tree": {"arity": 1}}, "machine.fat_tree.arity: value 1: expected an integer from 2"),
+    (
+        {"fat_tree": {"arity": 4, "levels": 2}},
+        "machine.fat_tree.levels: value 2: expected room for 64 PEs, not 4 ^ 2",
+    ),
+    (
+        {"fat_tree": {"arity": 4, "oversubscription": 3}},
+        "machine.fat_tree.oversubscription: value 3: expected a divisor of the arity 4",
+    ),
+    ({"fat_tree": {"arity": 4}, "levels": {"a": {}}}, "machine.fat_tree: it goes with topology"),
     ({"levels": {"a": {"latencyy": 0}}}, "machine.levels.a: unknown key 'latencyy'"),
 ]
 
