@@ -11,7 +11,8 @@ import click
 import numpy as np
 from rich.progress import TaskID
 
-from simmpp.commands.parts import options
+from simmpp.commands.parts import options, short_cuts
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, wrote
@@ -37,13 +38,19 @@ from simmpp.workload.trace.verify import verify
     "run",
     epilog=options.examples(
         "simmpp run configs/quick.yaml --picture quick.png",
-        "simmpp run configs/quick.yaml --set memory.fraction=5% --figures figures",
+        "simmpp run configs/quick.yaml --policy ray,concurrent --fraction 5% --figures figures",
         "simmpp run configs/quick.yaml --timeline cut.json --timeline-window '0 ms:5 ms'",
     ),
 )
 @options.config_argument
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.setting("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
+@short_cuts.settings(
+    "Set any other dotted key, such as machine.preset=t3d; repeatable.",
+    short_cuts.POLICY,
+    short_cuts.PROCESSORS,
+    short_cuts.FRACTION,
+    short_cuts.SEED,
+)
 @options.path("--out", "Folder for run.json and results.csv.")
 @options.path("--picture", "Write the picture as PNG.")
 @options.path(
@@ -62,6 +69,7 @@ from simmpp.workload.trace.verify import verify
     "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
 )
+@options.no_code
 @click.option(
     "--verify",
     is_flag=True,
@@ -77,6 +85,7 @@ def run_command(
     window: str | None,
     figures: Path | None,
     verify: bool,
+    may_run: bool,
 ) -> None:
     """Compare dataflow policies at one point.
 
@@ -84,7 +93,8 @@ def run_command(
     Object dataflow is run as the reference of the profits and the replicated scene as the ceiling,
     if they are not named.
     """
-    config = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(config)
     options.writable(picture, "--picture", ".png")
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.parts import options
+from simmpp.commands.parts import options, short_cuts
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import start_server
 
@@ -16,15 +16,21 @@ from simmpp.sweeps.executors import start_server
     "sweep",
     epilog=options.examples(
         "simmpp sweep configs/sweep.yaml",
-        "simmpp sweep configs/sweep.yaml --set seeds='[0, 1, 2, 3]' --out results/more",
+        "simmpp sweep configs/sweep.yaml --seeds 4 --processors 8,64 --out results/more",
     ),
 )
 @options.config_argument
 @options.workers("Processes on this machine; 1 works in this one.  [default: one for each core]")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.setting(
-    "Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable."
+@short_cuts.settings(
+    "Set any other dotted key, such as tolerance=2% or sweep.ready_order='[depth-first, "
+    "breadth-first]'; repeatable.",
+    short_cuts.POLICY,
+    short_cuts.PROCESSORS,
+    short_cuts.FRACTION,
+    short_cuts.SEEDS,
+    is_swept=True,
 )
 @click.option(
     "--timeout",
@@ -33,6 +39,7 @@ from simmpp.sweeps.executors import start_server
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )
+@options.no_code
 @options.path("--out", "Folder of the tables.  [default: results/NAME-OF-CONFIG]")
 def sweep_command(
     config_path: Path,
@@ -41,6 +48,7 @@ def sweep_command(
     engine: tuple[str, ...],
     overrides: tuple[str, ...],
     timeout_s: float | None,
+    may_run: bool,
     out: Path | None,
 ) -> None:
     """Simulate every combination of the values under the key sweep.
@@ -56,6 +64,7 @@ def sweep_command(
     if workers > 1 and cluster is None:
         start_server()
     # Not at the top: the server of the workers and this process load numba and the rest at once.
+    from simmpp.commands.parts.own_policies import tell_files
     from simmpp.commands.parts.progress import progress_of_sweep
     from simmpp.commands.parts.sweep_result import print_result
     from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say
@@ -63,7 +72,8 @@ def sweep_command(
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
 
-    config = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(config)
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()
