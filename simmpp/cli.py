@@ -43,6 +43,16 @@ class Commands(click.Group):
     A command's module, and numba with it, is imported when the command is run or asked for help.
     """
 
+    def make_context(
+        self,
+        info_name: str | None,
+        args: list[str],
+        parent: click.Context | None = None,
+        **extra: Any,
+    ) -> click.Context:
+        """Keep the words of the call, for those who will be told how to go on."""
+        return super().make_context(info_name, args, parent, obj=("simmpp", *args), **extra)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order of work, not of the alphabet."""
         return list(COMMANDS)

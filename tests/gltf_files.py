@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ import numpy as np
 import pytest
 
 from simmpp.common.errors import SceneError
-from simmpp.scene.gltf.read import nodes
+from simmpp.scene.gltf.read import content
+from simmpp.scene.node import Node
 
 CODES = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -102,6 +104,11 @@ def one_square(**node: Any) -> File:
     file = File()
     file.node(mesh=file.mesh(file.square()), **node)
     return file
+
+
+def nodes(data: bytes, file: Path) -> Sequence[Node]:
+    """The meshes of a file."""
+    return content(data, file).nodes
 
 
 def refused(data: bytes, file: str = "a.gltf") -> str:

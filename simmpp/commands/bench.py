@@ -10,7 +10,15 @@ import click
 
 from simmpp.commands.parts import options
 from simmpp.commands.parts.progress import progress_of_sweep
-from simmpp.commands.parts.terminal import FAILED, announce_compilation, notice, output, table
+from simmpp.commands.parts.tables import table
+from simmpp.commands.parts.terminal import (
+    FAILED,
+    announce_compilation,
+    go_on,
+    notice,
+    say,
+    wrote,
+)
 from simmpp.config.config import load_config
 from simmpp.studies.bench.bench import bench
 from simmpp.studies.bench.errors import Rung
@@ -59,8 +67,8 @@ def bench_command(
             watcher=watcher,
         )
     _print(outcome.rungs)
-    for path in outcome.files:
-        click.echo(f"wrote {path}")
+    wrote(*outcome.files)
+    go_on("report", out)
     for error in sorted(set(outcome.failed)):
         notice(f"{outcome.failed.count(error)} runs failed: {error}")
     sys.exit(FAILED if outcome.failed else 0)
@@ -80,8 +88,8 @@ def _print(rungs: Sequence[Rung]) -> None:
         }
         for rung in rungs
     ]
-    output().print(table(lines))
-    click.echo("\nrelative errors: root mean square over points and policies (and the worst)")
+    say(table(lines, n_keys=3))
+    say("\nrelative errors: root mean square over points and policies (and the worst)")
 
 
 def _share(error: float) -> str:

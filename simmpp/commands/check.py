@@ -12,7 +12,8 @@ import click
 
 from simmpp.commands.parts import options
 from simmpp.commands.parts.progress import progress_of_sweep
-from simmpp.commands.parts.terminal import FAILED, notice, output, progress_bars, table
+from simmpp.commands.parts.tables import table
+from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, write_csv
 from simmpp.common.folders import BASELINE, CHECK
@@ -87,7 +88,10 @@ def check_command(
     with TemporaryDirectory(prefix="simmpp-check-") as temporary:
         now = _swept(trial, workers, cluster, Path(temporary))
         if before is None:
-            sys.exit(_update(config, now, Path(temporary), baseline, target))
+            code = _update(config, now, Path(temporary), baseline, target)
+            if not code:
+                go_on("check", config_path, "--baseline", baseline)
+            sys.exit(code)
         sys.exit(_compare(config, before, now, Path(temporary), out))
 
 
@@ -112,7 +116,7 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
         _print(moved, reasons(config, baseline, now))
     if out:
         _write(moved, baseline, now, obtained, out)
-    click.echo(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")
+    say(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")
     return FAILED if moved else 0
 
 
@@ -131,25 +135,25 @@ def _update(config: Config, now: Sweep, obtained: Path, named: Path, target: Pat
         moved = moves(old, now, {})
         if moved:
             _print(moved, reasons(config, old, now))
-        click.echo(f"check: {len(moved) or 'no'} values of the baseline moved")
+        say(f"check: {len(moved) or 'no'} values of the baseline moved")
     write_baseline(obtained, target)
-    click.echo(f"check: baseline of {len(now.results)} rows in {target}")
+    say(f"check: baseline of {len(now.results)} rows in {target}")
     return 0
 
 
 def _print(moved: Sequence[Move], why: Sequence[str]) -> None:
-    console = output()
-    console.print(table(moves_by_measure(moved)))
+    say(table(moves_by_measure(moved), n_keys=1))
     curves = [move for move in moved if move.of_curve]
     for part in filter(None, (curves, [move for move in moved if not move.of_curve])):
-        console.print()
-        console.print(table([_rounded(line) for line in lines(part, MOVES_SHOWN)]))
+        say()
+        shown = [_rounded(line) for line in lines(part, MOVES_SHOWN)]
+        say(table(shown, n_keys=list(shown[0]).index("measure") + 1))
         if len(part) > MOVES_SHOWN:
             rest = len(part) - MOVES_SHOWN
-            console.print(f"... and {rest} smaller moves; {MOVED_CSV} in --out has all")
-    console.print()
+            say(f"... and {rest} smaller moves; {MOVED_CSV} in --out has all")
+    say()
     for reason in why:
-        console.print(reason, soft_wrap=True)
+        say(reason)
 
 
 def _rounded(line: Mapping[str, str]) -> dict[str, str]:

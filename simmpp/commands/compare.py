@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import output, table
+from simmpp.commands.parts.tables import table
+from simmpp.commands.parts.terminal import say
 from simmpp.report.page.comparison import causes, outcome, write_comparison
 from simmpp.report.page.difference import (
     SideBySide,
@@ -41,25 +42,24 @@ def compare_command(before_path: Path, after_path: Path, out: Path | None) -> No
     difference = difference_of(before, after)
     _print(difference)
     for reason in causes(before, after):
-        click.echo(reason)
+        say(reason)
     if out is not None:
         write_comparison(before, after, difference, out)
-        click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
-    click.echo(f"compare: {outcome(difference)}")
+        say(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
+    say(f"compare: {outcome(difference)}")
 
 
 def _print(difference: SideBySide) -> None:
-    console = output()
-    console.print(table(changes_by_measure(difference)))
-    console.print()
+    say(table(changes_by_measure(difference), n_keys=1))
+    say()
     changes = ranked(difference.changes)
     if changes:
-        console.print(table([line(change) for change in changes[:SHOWN]]))
+        say(table([line(change) for change in changes[:SHOWN]], n_keys=2))
     if len(changes) > SHOWN:
-        console.print(f"... and {len(changes) - SHOWN} smaller ones; a page (--out) has more")
+        say(f"... and {len(changes) - SHOWN} smaller ones; a page (--out) has more")
     for name, points in (("before", difference.only_before), ("after", difference.only_after)):
         for point in points[:SHOWN]:
-            console.print(f"only {name}: {point}", soft_wrap=True)
+            say(f"only {name}: {point}")
         if len(points) > SHOWN:
-            console.print(f"... and {len(points) - SHOWN} more only {name}")
-    console.print()
+            say(f"... and {len(points) - SHOWN} more only {name}")
+    say()

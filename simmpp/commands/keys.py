@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import click
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import output, texts
+from simmpp.commands.parts.tables import texts
+from simmpp.commands.parts.terminal import say
 from simmpp.config.keys import Key, find_keys, listed_keys
 from simmpp.config.reading import MACHINE
 from simmpp.config.schema import json_schema
@@ -37,19 +38,18 @@ def keys_command(key: str | None, schema: bool) -> None:
         _print_one(chosen[0])
     else:
         rows = ((key.name, key.default, key.expect.takes, key.meaning) for key in chosen)
-        output().print(texts(("key", "default", "takes", "meaning"), rows, whole=1))
+        say(texts(("key", "default", "takes", "meaning"), rows, whole=1))
 
 
 def _print_one(key: Key) -> None:
-    console = output()
-    console.print(f"{key.name}: {key.meaning}\n")
+    say(f"{key.name}: {key.meaning}\n")
     about = {"takes": key.expect.takes, "units": key.expect.unit, "default": key.default}
     for name, text in about.items():
         if text:
-            console.print(f"{name:9}{text}")
+            say(f"{name:9}{text}")
     if constants := list(_constants(key)):
-        console.print()
-        console.print(texts(("machine", "value", "source"), constants))
+        say()
+        say(texts(("machine", "value", "source"), constants))
 
 
 def _constants(key: Key) -> Iterator[tuple[str, str, str]]:

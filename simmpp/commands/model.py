@@ -8,14 +8,15 @@ from pathlib import Path
 import click
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import notice, output, table
+from simmpp.commands.parts.tables import table
+from simmpp.commands.parts.terminal import notice, say, wrote
 from simmpp.commands.parts.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
 from simmpp.common.folders import MODEL
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.model.analytical import Makespans, rays_of
-from simmpp.model.border import borders, claims
+from simmpp.model.border import SAID, borders, claims
 from simmpp.model.costs import GROUPS
 from simmpp.studies.nebel98.figure2_data import (
     ANALYTICAL,
@@ -79,18 +80,16 @@ def model_command(
     method = MEASURED if config.settings.method == MEASURED else ANALYTICAL
     rows = rows_of(times, workload.name, method, 0.0 if method == MEASURED else imbalance)
     columns = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
-    console = output()
-    console.print(_heading(config, workload, method))
-    console.print(table([{name: _cell(name, row[name]) for name in columns} for row in rows]))
-    console.print(_conclusion(times))
+    say(_heading(config, workload, method))
+    say(table([{n: _cell(n, row[n]) for n in columns} for row in rows], n_keys=2))
+    say(_conclusion(times))
     if out is not None:
         # Only --out draws, and matplotlib takes half a second.
         from simmpp.studies.nebel98.figure2 import write_figure2
 
         machine = config.settings.machine.preset
         heading = f"Analytical model of Nebel 1998, {workload.name}, {machine}"
-        for path in write_figure2(config, workload, rows, heading, out, ratios):
-            click.echo(f"wrote {path}")
+        wrote(*write_figure2(config, workload, rows, heading, out, ratios))
 
 
 def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:
@@ -129,5 +128,6 @@ def _conclusion(times: Makespans) -> str:
     lines = [f"nb = {nb}: the winner changes at x = {x:.3f}" for nb, x in at if x == x]
     for claim in claims(times):
         verdict = "holds" if claim.holds else "does not hold"
-        lines.append(f"claim {claim.claim} {verdict}: {claim.simulated}")
+        said = f"claim {claim.claim} ({SAID[claim.claim]})"
+        lines.append(f"{said} {verdict}: {claim.simulated}")
     return "\n" + "\n".join(lines or ["no change of winner at any nb"])

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import click
-from rich.table import Table
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import output, texts
+from simmpp.commands.parts.tables import Fitting, texts
+from simmpp.commands.parts.terminal import say
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, point_at
 from simmpp.config.defaults import READING
@@ -25,24 +25,23 @@ def reading_command(name: str | None) -> None:
     A reading gives defaults to policies, placement, memory and costs: what the paper is taken to
     mean where it leaves something open. A configuration chooses one by its key reading.
     """
-    console = output()
     if name is None:
         readings = ((name, load_reading(name).description) for name in reading_names())
-        console.print(texts(("reading", "description"), readings, whole=1))
+        say(texts(("reading", "description"), readings, whole=1))
         return
     reading = load_reading(name)
-    console.print(f"{reading.name}: {reading.description}\n")
-    console.print(_table("key", reading.lines))
+    say(f"{reading.name}: {reading.description}\n")
+    say(_table("key", reading.lines))
 
 
 def print_reading(config: Config) -> None:
     """Say what the reading sets in a configuration, and whether its costs are left out."""
     name, costs, preset = config.reading.name, config.reading.costs, config.settings.machine.preset
     if lines := config.lines_of_reading:
-        output().print()
-        output().print(_table(f"reading {name} sets", lines))
+        say()
+        say(_table(f"reading {name} sets", lines))
     if costs and preset not in costs:
-        click.echo(f"reading {name} has costs for {', '.join(costs)}, none for {preset}: not set")
+        say(f"reading {name} has costs for {', '.join(costs)}, none for {preset}: not set")
 
 
 def print_readings_of_sweep(config: Config) -> None:
@@ -55,5 +54,5 @@ def print_readings_of_sweep(config: Config) -> None:
         print_reading(point_at(config, axes, numbers))
 
 
-def _table(heading: str, lines: Iterable[Line]) -> Table:
+def _table(heading: str, lines: Iterable[Line]) -> Fitting:
     return texts((heading, "value", "source"), lines)

@@ -14,6 +14,7 @@ from simmpp.report.page.beside import FIGURES_FOLDER
 from simmpp.report.page.figures.stills import Still, stills_of, write_stills
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.report import PAGE, follow, report_of, write_page
+from simmpp.report.page.standing import standing_of, warnings_of
 
 
 @click.command(
@@ -54,6 +55,8 @@ def report_command(folder_path: Path, names: tuple[str, ...], live: bool) -> Non
     options.folder(folder_path, "DIR")
     page = write_page(report, stills=[still.stem for still in stills])
     click.echo(f"{page}: {len(report.folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
+    for warned in warnings_of(report.folder):
+        notice(str(warned))
     if stills:
         _draw(stills, to)
 
@@ -63,8 +66,7 @@ def _follow(folder_path: Path, page: Path) -> None:
     notice(f"{page}: reloads itself while the sweep runs")
     try:
         for present in follow(folder_path):
-            failed = f", {len(present.failed)} failed" if present.failed else ""
-            notice(f"{len(present.rows)} of {present.planned} rows{failed}")
+            notice(standing_of(present).progress)
     except KeyboardInterrupt:
         write_page(report_of(read_folder(folder_path)))  # reloads itself no more
         raise

@@ -11,10 +11,12 @@ import click
 
 from simmpp.commands.parts import options
 from simmpp.commands.parts.progress import progress_of_sweep
-from simmpp.commands.parts.terminal import FAILED, announce_compilation, notice, output, table
+from simmpp.commands.parts.tables import texts
+from simmpp.commands.parts.terminal import FAILED, announce_compilation, go_on, notice, say
 from simmpp.common.errors import ConfigError
 from simmpp.config.reading import load_reading
 from simmpp.studies.nebel98.reproduce import Reproduction, named, reproduce
+from simmpp.studies.nebel98.verdict import PAPER
 
 
 @click.command(
@@ -78,7 +80,9 @@ def reproduce_command(
             watcher=watcher,
         )
     _print(done)
-    click.echo(f"\n{out}: rows, figures and claims.csv, in {time.monotonic() - began_s:.0f} s")
+    say(f"\n{out}: rows, figures and claims.csv, in {time.monotonic() - began_s:.0f} s")
+    for one in done:
+        go_on("report", out if len(done) == 1 else out / one.reading)
     sys.exit(FAILED if any(one.failed for one in done) else 0)
 
 
@@ -93,15 +97,18 @@ def _refuse_unknown(readings: Sequence[str]) -> None:
 
 
 def _print(done: Sequence[Reproduction]) -> None:
-    """The verdicts: of one reading with what was simulated, of several side by side."""
-    columns = ("claim", "holds", "simulated")
-    lines = [{c: getattr(verdict, c) for c in columns} for verdict in done[0].verdicts]
-    if len(done) > 1:
-        lines = [
-            {"claim": verdict.claim, **{one.reading: one.verdicts[n].holds for one in done}}
-            for n, verdict in enumerate(done[0].verdicts)
+    """The paper's words and the verdict: of one reading with what was simulated, or of several."""
+    names, last = (["holds"], ["simulated"]) if len(done) == 1 else ([o.reading for o in done], [])
+    rows = [
+        [
+            verdict.claim,
+            *(one.verdicts[n].holds for one in done),
+            verdict.paper.removeprefix(PAPER),
+            *([verdict.simulated] if last else []),
         ]
-    output().print(table(lines))
+        for n, verdict in enumerate(done[0].verdicts)
+    ]
+    say(texts(["claim", *names, "the paper", *last], rows, whole=1 + len(names)))
     failed = [error for one in done for error in one.failed]
     for error in sorted(set(failed)):
         notice(f"{failed.count(error)} points failed: {error}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from rich.progress import TaskID
 
 from simmpp.commands.parts import options
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
-from simmpp.commands.parts.terminal import FAILED, notice, output, progress_bars
+from simmpp.commands.parts.tables import numbers
+from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, wrote
 from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
@@ -21,9 +23,10 @@ from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
-from simmpp.run.rows import RECORD, RESULTS, write_rows
-from simmpp.run.summary import summary
+from simmpp.run.rows import RECORD, RESULTS, row, write_rows
+from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
+from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
 from simmpp.workload.trace.shading import render, save_png
@@ -116,8 +119,9 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         if out and runs:
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
-    output().print(summary(point, runs))
+    _print(point, runs)
     print_reading(config)
+    _print_files(out, looks)
     if verify:
         _verify(point, runs)
 
@@ -151,6 +155,31 @@ def _simulate(
                 recorder.end(run)
 
 
+def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
+    """What was simulated, who wins, every measure of every policy, and what one has to know."""
+    titles = [run.parameters.title for run in runs]
+    labels = {run.parameters.title: run.parameters.name for run in runs}
+    say(f"{heading(point)}\n")
+    for sentence in answer_of([row(point, run) for run in runs], labels=labels):
+        say(sentence.text)
+    say()
+    say(numbers(titles, measures(runs)))
+    say()
+    for note in notes(point, runs):
+        say(note)
+
+
+def _print_files(out: Path | None, looks: Looks) -> None:
+    """Which there are now, and the command that goes on with them."""
+    rows = [out / RECORD, out / RESULTS] if out else []
+    files = [*rows, *filter(None, (looks.picture, looks.timeline, looks.figures))]
+    if files:
+        say()
+    wrote(*files)
+    if out:
+        go_on("report", out)
+
+
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     scene = scene_of(point.config.ray_source, "--picture")()
@@ -166,7 +195,7 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
         rays, objects = (nothing if column is None else column for column in tests)
         problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
-        click.echo(f"verify {run.parameters.title}: {verdict}")
+        say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None
     if failed:
         sys.exit(FAILED)

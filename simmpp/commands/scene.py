@@ -8,17 +8,20 @@ from typing import Any
 import click
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import OBJECTS_SHOWN, output, texts
+from simmpp.commands.parts.inputs import config_of
+from simmpp.commands.parts.tables import texts
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
 from simmpp.common.files import write_text
 from simmpp.common.units import counted, format_bytes
+from simmpp.config.config import Config
 from simmpp.scene.describe import describe, object_table
 from simmpp.scene.nff import write_nff
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
-from simmpp.workload.sources import load_scene
+from simmpp.workload.sources import scene_of
 
 PREVIEW_RESOLUTION = 512
-MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 10
+MATERIALS_SHOWN, LIGHTS_SHOWN, CAMERAS_SHOWN = 20, 10, 10
 
 
 @click.command(
@@ -29,38 +32,51 @@ MATERIALS_SHOWN, LIGHTS_SHOWN = 20, 10
     ),
 )
 @click.argument("spec")
+@options.setting(
+    "Set a dotted key of the configuration, such as scene.camera.angle=30; repeatable."
+)
 @options.path("--nff", "Write the scene as NFF.")
 @options.path("--preview", "Write a picture of it as PNG.")
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
-def scene_command(spec: str, nff: Path | None, preview: Path | None, all_objects: bool) -> None:
+def scene_command(
+    spec: str,
+    overrides: tuple[str, ...],
+    nff: Path | None,
+    preview: Path | None,
+    all_objects: bool,
+) -> None:
     """List the objects and materials of a scene.
 
-    SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size) or a file: NFF, or a
-    mesh, which :nodes, :components or :K (clusters of at most K triangles) after its name cuts.
+    SPEC is mountain:5, rings:1, ... (a generator of the SPD and its size), a configuration (.yaml),
+    or a file: NFF, or a mesh, which :nodes, :components, :groups or :K (clusters of at most K
+    triangles) after its name cuts.
     """
     options.writable(nff, "--nff", ".nff")
     options.writable(preview, "--preview", ".png")
-    scene = load_scene(spec)
+    config = config_of(spec, overrides)
+    scene = scene_of(config.ray_source, "scene")()
     _list(scene, None if all_objects else OBJECTS_SHOWN)
     if nff:
         write_text(write_nff(scene), nff)
     if preview:
-        _preview(scene, preview)
+        _preview(scene, config, preview)
+    wrote(*filter(None, (nff, preview)))
+    if nff:
+        go_on("run", "CONFIG", "--set", f"scene={nff}")
 
 
 def _list(scene: Scene, most_objects: int | None) -> None:
     """Print counts, camera, lights, materials and objects; the first ones of a long list."""
     facts = describe(scene)
-    console = output()
-    console.print("\n".join(_facts(facts)), soft_wrap=True)
-    console.print()
+    say("\n".join(_facts(facts)))
+    say()
     _print(facts["materials"], MATERIALS_SHOWN if most_objects else None)
     objects = object_table(scene)
     rows = objects if most_objects is None else objects.head(most_objects)
-    console.print()
+    say()
     _print(rows.to_dict("records"))
     if len(rows) < len(objects):
-        console.print(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
+        say(f"... and {len(objects) - len(rows)} more objects; --objects lists all")
 
 
 def _facts(facts: dict[str, Any]) -> list[str]:
@@ -73,7 +89,13 @@ def _facts(facts: dict[str, Any]) -> list[str]:
         f"{facts['reflecting']} reflect, {facts['transmitting']} transmit",
         f"camera at {_vector(camera['eye'])} towards {_vector(camera['at'])}, "
         f"up {_vector(camera['up'])}, {camera['angle_degrees']:g} degrees",
+        facts["view"],
     ]
+    if facts["cameras"]:
+        names = [f"{number} ({name})" for number, name in enumerate(facts["cameras"])]
+        rest = [f"... {len(names) - CAMERAS_SHOWN} more"] if len(names) > CAMERAS_SHOWN else []
+        lines.append(f"cameras of the file: {', '.join(names[:CAMERAS_SHOWN] + rest)}")
+    lines += facts["notes"]
     if facts["n_objects"]:
         low, high = _vector(facts["box"]["low"]), _vector(facts["box"]["high"])
         lines.append(f"box from {low} to {high}")
@@ -91,9 +113,9 @@ def _print(rows: list[dict[Any, Any]], most: int | None = None) -> None:
     """Print rows as a table; beyond ``most`` only their number."""
     names = list(rows[0]) if rows else []
     cells = [[_cell(value) for value in row.values()] for row in rows[:most]]
+    say(texts(names, cells, whole=len(names)))
     if most is not None and len(rows) > most:
-        cells.append([f"... {len(rows) - most} more"])
-    output().print(texts(names, cells, whole=len(names)))
+        say(f"... {len(rows) - most} more")
 
 
 def _cell(value: object) -> str:
@@ -104,11 +126,14 @@ def _cell(value: object) -> str:
     return _vector(value) if isinstance(value, list) else str(value)
 
 
-def _preview(scene: Scene, path: Path) -> None:
-    """The picture of the scene's own camera."""
+def _preview(scene: Scene, config: Config, path: Path) -> None:
+    """The picture of the scene's camera, in the shape that the configuration gives it."""
     # Only --preview traces, which needs numba.
     from simmpp.commands.parts.tracing import workload_of_scene
     from simmpp.workload.trace.shading import render, save_png
 
-    picture = Picture(resolution=PREVIEW_RESOLUTION)
+    rows, columns = config.picture.of(scene).pixels
+    scale = PREVIEW_RESOLUTION / max(rows, columns)
+    sides = (max(1, round(columns * scale)), max(1, round(rows * scale)))
+    picture = Picture(resolution=sides)
     save_png(render(scene, picture, workload_of_scene(scene, picture)), path)

@@ -58,7 +58,7 @@ def sweep_command(
     # Not at the top: the server of the workers and this process load numba and the rest at once.
     from simmpp.commands.parts.progress import progress_of_sweep
     from simmpp.commands.parts.sweep_result import print_result
-    from simmpp.commands.parts.terminal import announce_compilation
+    from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say
     from simmpp.commands.reading import print_readings_of_sweep
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
@@ -67,7 +67,8 @@ def sweep_command(
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()
-    with progress_of_sweep() as watcher:
+    call = options.call()
+    with progress_of_sweep(call) as watcher:
         result = run_sweep(
             config,
             workers=workers,
@@ -75,7 +76,12 @@ def sweep_command(
             timeout_s=timeout_s,
             out=out,
             watcher=watcher,
+            call=call,
         )
     code = print_result(result, config.settings, out)
+    if code:
+        notice(f"to try again: {call}")
     print_readings_of_sweep(config)
+    say()
+    go_on("report", out)
     sys.exit(code)

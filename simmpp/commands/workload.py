@@ -8,11 +8,12 @@ import click
 import numpy as np
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import OBJECTS_SHOWN, output, table
+from simmpp.commands.parts.inputs import config_of
+from simmpp.commands.parts.tables import table
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
 from simmpp.commands.parts.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
-from simmpp.config.config import config_from_mapping, load_config
 from simmpp.workload.describe import object_uses, rays_by_depth, rays_by_kind
 from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
 from simmpp.workload.exchange.exchange import export_workload
@@ -47,35 +48,32 @@ def workload_command(
     if export and not is_workload(export.name):
         expected = f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}"
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
-    if spec.lower().endswith((".yaml", ".yml")):
-        config = load_config(spec, overrides)
-    else:
-        config = config_from_mapping({"scene": spec}, overrides)
-    rays = workload(config)
+    rays = workload(config_of(spec, overrides))
     if export:
         export_workload(rays, export)
     _list(rays, None if all_objects else OBJECTS_SHOWN)
+    if export:
+        wrote(export)
+        go_on("run", "CONFIG", "--set", f"scene={export}")
 
 
 def _list(workload: Workload, most_objects: int | None) -> None:
     """Print counts, rays by depth and kind, and objects; the first ones of a long list."""
-    console = output()
     rows, columns = workload.picture
     tested = len(np.unique(workload.itinerary_objects))
     size = format_bytes(int(workload.object_bytes.sum()))
     depths = rays_by_depth(workload)
     deepest = f", ... to depth {len(depths)}" if len(depths) > DEPTHS_SHOWN else ""
-    console.print(
+    say(
         f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "
         f"{workload.n_tests} tests\n"
         f"{workload.n_objects} objects, {size}; {tested} of them tested\n"
         f"rays by depth: {', '.join(map(str, depths[:DEPTHS_SHOWN]))}{deepest}",
-        soft_wrap=True,
     )
-    console.print()
-    console.print(table(rays_by_kind(workload)))
-    console.print()
-    console.print(table(object_uses(workload, most_objects)))
+    say()
+    say(table(rays_by_kind(workload)))
+    say()
+    say(table(object_uses(workload, most_objects)))
     if most_objects is not None and workload.n_objects > most_objects:
         rest = workload.n_objects - most_objects
-        console.print(f"... and {rest} more objects; --objects lists all")
+        say(f"... and {rest} more objects; --objects lists all")

@@ -1,6 +1,7 @@
 """The folder that a command writes: it holds one kind of results, and one process works there.
 
-``.simmpp`` in it says which kind; folders that nobody has marked are known by their files.
+``.simmpp`` in it says which kind, and how whoever works there was called; folders that nobody has
+marked are known by their files.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shlex import quote
 
 from filelock import FileLock, Timeout
 
@@ -96,8 +98,28 @@ def kind_of(folder: Path) -> str | None:
     if not names - {MARK, LOCK}:
         return None  # nothing was finished here
     if MARK in names:
-        return (folder / MARK).read_text(encoding="utf-8", errors="replace").strip()
+        return _mark(folder)[0]
     return next((kind for sign, kind in SIGNS.items() if sign in names | _keys(folder)), None)
+
+
+def note_call(folder: Path, call: str) -> None:
+    """Note by which command the results here are made, in a folder that is claimed."""
+    write_text(f"{_mark(folder)[0]}\n{Path.cwd()}\n{call}\n", folder / MARK)
+
+
+def last_call(folder: Path) -> str:
+    """That command, as it can be given from here; empty if nobody noted one."""
+    mark = _mark(folder) if (folder / MARK).is_file() else []
+    if len(mark) < 3:
+        return ""
+    _, where, call = mark
+    return call if where == str(Path.cwd()) else f"cd {quote(where)} && {call}"
+
+
+def _mark(folder: Path) -> list[str]:
+    """The kind, and if a call was noted where that was, and the call."""
+    text = (folder / MARK).read_text(encoding="utf-8", errors="replace")
+    return text.strip().split("\n", 2)
 
 
 def _keys(folder: Path) -> set[str]:

@@ -26,7 +26,7 @@ from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
-from simmpp.workload.sources import FILES
+from simmpp.workload.scene_settings import FILES
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) 
 def _structured(data: dict[str, Any], places: Places, folder: Path) -> Config:
     reading = _reading_of(data, places, folder)
     settings = structure(Settings, filled(data, reading), places)
-    scenes = _folder_of([("scene", key) for key in FILES], places, folder)
+    scenes = _folder_of([("scene", key) for key in (*FILES, "parts")], places, folder)
     return Config(settings, scenes, reading, Source(data, places, folder))
 
 

@@ -13,6 +13,7 @@ from simmpp.config.axes import SAME
 from simmpp.config.settings import Settings, long_policies
 from simmpp.machine.constants import long_test
 from simmpp.policy.parameters import DEFAULT_POLICY
+from simmpp.scene.view import long_camera
 from simmpp.workload.sources import long_scene
 
 Places = dict[KeyPath, Place]
@@ -20,6 +21,7 @@ Places = dict[KeyPath, Place]
 
 _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
     ("scene",): long_scene,
+    ("scene", "camera"): long_camera,
     ("policy",): long_policies,
     ("machine", "test"): long_test,
 }

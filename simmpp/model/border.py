@@ -20,6 +20,12 @@ FRACTIONS = (
 )
 """The grid of the claims, where a configuration has no axes of its own."""
 RAY, TIE, OBJECT = -1, 0, 1
+SAID = {
+    "F2a": "object dataflow is best when each PE holds a large part of the scene, ray dataflow "
+    "when a small part",
+    "F2b": "more processors favour object dataflow",
+}
+"""What the paper says of its figure 2, by the name of the claim."""
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,9 @@ from simmpp.run.provenance import all_versions
 from simmpp.run.rows import row
 from simmpp.run.summary import imbalance, utilisation
 
+SIMULATIONS, FINISHED, FAILED = "simulations", "finished", "failed"
+"""Keys of a sweep's: how many simulations are asked for, and what became of them so far."""
+
 
 def recorded(config: Config) -> dict[str, Any]:
     """The configuration with all its defaults, without the one key that decides no row."""

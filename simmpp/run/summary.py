@@ -1,4 +1,4 @@
-"""The table that ``simmpp run`` prints: one column per policy, one line per measure."""
+"""What ``simmpp run`` says: a table with a column for each policy, and what one has to know."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
@@ -19,15 +16,9 @@ from simmpp.run.profit import ratio
 Cell = Callable[[PolicyRun], str]
 
 
-def summary(point: Point, runs: Sequence[PolicyRun]) -> Group:
-    """What was simulated, the table, the bound, and what the user may not expect of the runs."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("", no_wrap=True)
-    for run in runs:
-        table.add_column(run.parameters.title, justify="right", no_wrap=True)
-    for label, cell in _lines(runs):
-        table.add_row(label, *map(cell, runs))
-    return Group(Text(heading(point)), Text(), table, Text(), Text("\n".join(_notes(point, runs))))
+def measures(runs: Sequence[PolicyRun]) -> list[tuple[str, list[str]]]:
+    """The name of each measure, and what it is for each policy."""
+    return [(label, [cell(run) for run in runs]) for label, cell in _lines(runs)]
 
 
 def heading(point: Point) -> str:
@@ -133,6 +124,33 @@ def _best_classical(runs: Sequence[PolicyRun]) -> str:
     return "; ".join([named, *others, *(f"{name} was not run" for name in absent)])
 
 
+def _memory(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+    """Whether everything fits; a share of the scene is no number of bytes that could be exceeded.
+
+    ``memory.bytes`` is room for resident objects: rays and fetched objects come on top, and the
+    simulation bounds neither.
+    """
+    workload, room = point.workload, point.config.memory.bytes
+    if point.placement.effective_fraction == 1:
+        scene = format_bytes(int(workload.object_bytes.sum()))
+        return [f"the whole scene, {scene}, fits into every memory: nothing has to be sent"]
+    if room is None:
+        return []
+    held = {run.parameters.title: run.result.peak_bytes for run in runs if not run.all_resident}
+    if max(held.values()) <= room:
+        most = format_bytes(max(held.values()))
+        return [f"everything fits into memory: at most {most} on a PE, rays included"]
+    beyond = ", ".join(
+        f"{title} {format_bytes(size)} ({_times(ratio(size, room))} times as much)"
+        for title, size in held.items()
+        if size > room
+    )
+    return [
+        f"memory.bytes, {format_bytes(room)}, holds resident objects; with rays and fetched "
+        f"objects a PE holds up to: {beyond}"
+    ]
+
+
 def _idle_at_first(point: Point) -> list[str]:
     """How many PEs have no pixel, where there are such: more PEs than rows, or than pixels."""
     nb, (rows, columns) = point.machine.processors, point.workload.picture
@@ -143,12 +161,13 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
-def _notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
+    """The bound, the best classical dataflow, and what the user may not expect of the runs."""
     bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
-    notes = [bound, _best_classical(runs), *_idle_at_first(point)]
-    notes += [
+    lines = [bound, _best_classical(runs), *_memory(point, runs), *_idle_at_first(point)]
+    lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs
         for rule in run.result.rules_never_fired
     ]
-    return notes
+    return lines

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, SceneObject, Sphere
+from simmpp.scene.columns import CONE, MESH, POLYGON, SPHERE, Columns, columns
+from simmpp.scene.scene import Floats, SceneObject
 
 ORIGIN: Floats = np.zeros(3)
 """The origin of the scene's own coordinates."""
@@ -17,18 +19,25 @@ def boxes(objects: Sequence[SceneObject], origin: Floats = ORIGIN) -> Floats:
 
     An offset of everything, the origin too, leaves them as they are, if the coordinates bear it.
     """
-    bounds = np.empty((len(objects), 2, 3))
-    spheres = [i for i, obj in enumerate(objects) if isinstance(obj, Sphere)]
-    cones = [i for i, obj in enumerate(objects) if isinstance(obj, Cone)]
-    bounds[spheres] = _sphere_boxes([objects[i] for i in spheres], origin)
-    bounds[cones] = _cone_boxes([objects[i] for i in cones], origin)
-    flat = [i for i, obj in enumerate(objects) if isinstance(obj, Polygon | MeshPart)]
-    if flat:
-        corners = [_corners(objects[i]) for i in flat]
-        starts = np.cumsum([0] + [len(part) for part in corners[:-1]])
-        points = np.concatenate(corners) - origin
-        bounds[flat, 0] = np.minimum.reduceat(points, starts)
-        bounds[flat, 1] = np.maximum.reduceat(points, starts)
+    return boxes_of(columns(objects), origin)
+
+
+def boxes_of(objects: Columns, origin: Floats = ORIGIN) -> Floats:
+    """The same of objects that are columns already."""
+    bounds = np.empty((len(objects.kinds), 2, 3))
+    bounds[objects.kinds == SPHERE] = _sphere_boxes(objects.spheres, origin)
+    bounds[objects.kinds == CONE] = _cone_boxes(objects.cones, origin)
+    flat = objects.kinds >= POLYGON
+    if flat.any():
+        sizes = objects.n_vertices[flat]
+        starts = np.cumsum(sizes) - sizes
+        low = high = objects.vertices - origin
+        unused = _unused(objects)
+        if unused.any():
+            low = high.copy()
+            low[unused], high[unused] = np.inf, -np.inf
+        bounds[flat, 0] = np.minimum.reduceat(low, starts)
+        bounds[flat, 1] = np.maximum.reduceat(high, starts)
     return bounds
 
 
@@ -38,32 +47,26 @@ def scene_box(objects: Sequence[SceneObject]) -> Floats:
     return np.stack([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
 
 
-def _corners(obj: SceneObject) -> Floats:
-    if isinstance(obj, MeshPart):
-        return obj.vertices[np.unique(obj.faces)]  # one that no face uses is not to be hit
-    if isinstance(obj, Polygon):
-        return obj.vertices
-    raise TypeError(f"no corners: {obj.kind}")
+def _unused(objects: Columns) -> NDArray[np.bool_]:
+    """(n,) bool: vertices of meshes that no face uses, which are not to be hit."""
+    unused = np.repeat(objects.kinds == MESH, objects.n_vertices)
+    if len(objects.faces):
+        unused[objects.faces] = False
+    return unused
 
 
-def _sphere_boxes(objects: Sequence[SceneObject], origin: Floats) -> Floats:
-    rows = [(*s.centre, s.radius) for s in objects if isinstance(s, Sphere)]
-    values = np.array(rows).reshape(-1, 4)
-    centre, radius = values[:, :3] - origin, np.abs(values[:, 3:])
+def _sphere_boxes(spheres: Floats, origin: Floats) -> Floats:
+    centre, radius = spheres[:, :3] - origin, np.abs(spheres[:, 3:])
     return np.stack([centre - radius, centre + radius], axis=1)
 
 
-def _cone_boxes(objects: Sequence[SceneObject], origin: Floats) -> Floats:
+def _cone_boxes(cones: Floats, origin: Floats) -> Floats:
     """Bounds of two discs each: a disc of radius r reaches r sqrt(1 - a_k^2) along axis k.
 
     1 - a_k^2 is taken from the other two components, so that a disc across an axis has no
     thickness of rounding.
     """
-    rows = [
-        (*c.base, c.base_radius, *c.apex, c.apex_radius) for c in objects if isinstance(c, Cone)
-    ]
-    values = np.array(rows).reshape(-1, 8)
-    base, base_radius, apex, apex_radius = np.split(values, (3, 4, 7), axis=1)
+    base, base_radius, apex, apex_radius = np.split(cones, (3, 4, 7), axis=1)
     base, apex = base - origin, apex - origin
     along = (apex - base) ** 2
     across = along[:, [1, 0, 0]] + along[:, [2, 2, 1]]

@@ -14,6 +14,7 @@ Without the welding every triangle of an STL file would be a component of its ow
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,11 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
 from simmpp.scene.scene import Floats
 
-OBJECTS = "nodes, components or {clusters: 500} (triangles each at most)"
-Indices = NDArray[np.int64]
+OBJECTS = "nodes, components, groups or {clusters: 500} (triangles each at most)"
+OF_OBJ = "groups"
+"""Only this format has them."""
+Indices = NDArray[np.integer[Any]]
+"""Whole numbers of any width."""
 Cut = Callable[[Floats, Indices], list[Indices]]
 """Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
 
@@ -31,12 +35,12 @@ Cut = Callable[[Floats, Indices], list[Indices]]
 def cut_named(objects: object) -> tuple[str, Cut]:
     """Label and cut for the configuration's ``objects``.
 
-    ``nodes`` keeps a scene node whole, ``components`` parts what no vertex joins,
-    ``{clusters: k}`` bisects until no object has more than k triangles. Raises ConfigError, which
-    says what was expected.
+    ``nodes`` keeps a scene node whole, as ``groups`` does each group of a node of OBJ,
+    ``components`` parts what no vertex joins, ``{clusters: k}`` bisects until no object has more
+    than k triangles. Raises ConfigError, which says what was expected.
     """
-    if objects == "nodes":
-        return "nodes", _whole
+    if objects in ("nodes", OF_OBJ):
+        return str(objects), _whole
     if objects == "components":
         return "components", _components
     if isinstance(objects, Mapping) and set(objects) == {"clusters"}:

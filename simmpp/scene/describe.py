@@ -8,10 +8,11 @@ from typing import Any, get_args
 import numpy as np
 import pandas as pd
 
-from simmpp.scene.boxes import boxes, scene_box
+from simmpp.scene.boxes import boxes_of, scene_box
+from simmpp.scene.columns import Columns, Counts, columns_of
 from simmpp.scene.scene import Camera, Light, Material, Scene, SceneObject
-from simmpp.scene.triangles import n_triangles
-from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.scene.tiling import faces_of
+from simmpp.scene.wire import sizes_on_the_wire
 
 
 def describe(scene: Scene) -> dict[str, Any]:
@@ -21,7 +22,7 @@ def describe(scene: Scene) -> dict[str, Any]:
     don't occur; ``triangles`` leaves out spheres and cones, which have none; ``reflecting`` and
     ``transmitting`` count objects.
     """
-    objects = scene.objects
+    objects, columns = scene.objects, columns_of(scene)
     kinds = Counter(obj.kind for obj in objects)
     surfaces = [scene.materials[obj.material] for obj in objects]
     low, high = scene_box(objects).tolist() if objects else (None, None)
@@ -29,13 +30,16 @@ def describe(scene: Scene) -> dict[str, Any]:
         "name": scene.name,
         "n_objects": len(objects),
         "objects": {of.kind: kinds[of.kind] for of in get_args(SceneObject) if kinds[of.kind]},
-        "triangles": sum(map(n_triangles, objects)),
-        "bytes": sum(map(bytes_on_the_wire, objects)),
+        "triangles": int(_n_triangles(columns).sum()),
+        "bytes": int(sizes_on_the_wire(columns).sum()),
         "box": {"low": low, "high": high},
         "reflecting": sum(surface.reflects for surface in surfaces),
         "transmitting": sum(surface.transmits for surface in surfaces),
         "materials": _materials(scene),
         "lights": [_plain(light) for light in scene.lights],
+        "view": scene.origin.view,
+        "cameras": [name for name, _ in scene.origin.cameras],
+        "notes": list(scene.origin.notes),
         # No renderer here has a near plane.
         "camera": {k: v for k, v in _plain(scene.camera).items() if k != "hither"},
         "background": list(scene.background),
@@ -49,17 +53,24 @@ def object_table(scene: Scene) -> pd.DataFrame:
     x_high, y_high, z_high`` in scene units.
     """
     objects = scene.objects
-    bounds = boxes(objects).reshape(-1, 6)
+    columns = columns_of(scene)
+    bounds = boxes_of(columns).reshape(-1, 6)
     table: dict[str, Any] = {
         "id": np.arange(len(objects)),
         "kind": [obj.kind for obj in objects],
         "name": [getattr(obj, "name", "") for obj in objects],
         "material": [obj.material for obj in objects],
-        "triangles": [n_triangles(obj) for obj in objects],
-        "bytes": [bytes_on_the_wire(obj) for obj in objects],
+        "triangles": _n_triangles(columns),
+        "bytes": sizes_on_the_wire(columns),
     }
     corners = [f"{axis}_{end}" for end in ("low", "high") for axis in "xyz"]
     return pd.DataFrame(table | dict(zip(corners, bounds.T, strict=True)))
+
+
+def _n_triangles(columns: Columns) -> Counts:
+    """(N,) int64; 0 for spheres and cones."""
+    _, owners = faces_of(columns)
+    return np.bincount(owners, minlength=len(columns.kinds))
 
 
 def _materials(scene: Scene) -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,6 +35,17 @@ def framing(bounds: Floats, *, up: Vector) -> tuple[Camera, tuple[Light, ...]]:
     )
     camera = Camera(_vector(eye), _vector(centre), up, ANGLE_DEGREES)
     return camera, tuple(Light(_vector(light)) for light in lights)
+
+
+FAR_OFF = 1e6
+"""Of a sun, in diagonals of the scene: its light is parallel to a millionth. ESTIMATE."""
+
+
+def far_off(sun: Light, bounds: Floats) -> Light:
+    """A point light for one of which only the way to it is known, as its ``position``."""
+    centre = (bounds[0] + bounds[1]) / 2
+    distance = FAR_OFF * math.dist(bounds[0], bounds[1])
+    return replace(sun, position=_vector(centre + distance * _unit(np.array(sun.position))))
 
 
 def _unit(v: Floats) -> Floats:

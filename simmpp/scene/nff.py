@@ -21,7 +21,6 @@ from simmpp.scene.packed import name_of, read_whole
 from simmpp.scene.scene import (
     Camera,
     Cone,
-    Floats,
     Light,
     Material,
     MeshPart,
@@ -120,12 +119,9 @@ class _Reader:
         if words.skip("resolution"):
             side = partial(words.count, "the resolution", 1, MAX_RESOLUTION)
             resolution = side(), side()
-        towards, upwards = _scaled(np.subtract(at, eye)), _scaled(np.array(up))
-        sideways = np.linalg.norm(np.cross(towards, upwards))
-        # "not above" rather than "at most": what overflowed to NaN is no direction either.
-        if not sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(upwards):
-            self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
         self.camera = Camera(eye, at, up, angle, hither, resolution)
+        if not self.camera.aims:
+            self._fail("the view needs a direction ('from' is not 'at') and an 'up' not along it")
 
     def _background(self) -> None:
         if self.background is not None:
@@ -200,12 +196,6 @@ class _Reader:
 
     def _fail(self, problem: str) -> NoReturn:
         self.words.fail(problem)
-
-
-def _scaled(vector: Floats) -> Floats:
-    """The vector with 1 as its largest number, so that squares are neither 0 nor infinite."""
-    largest = np.abs(vector).max()
-    return vector / largest if largest > 0 else vector
 
 
 def write_nff(scene: Scene) -> str:

@@ -73,11 +73,44 @@ class Camera:
     up: Vector = (0.0, 0.0, 1.0)
     """The direction that is upwards in the picture."""
     angle_degrees: float = 45.0
-    """Full field of view, the same horizontally and vertically."""
+    """Full field of view from the upper to the lower edge of the picture; pixels are squares."""
     hither: float = 0.0
     """Near plane of hidden-surface programs; a ray tracer ignores it."""
     resolution: tuple[int, int] = (512, 512)
     """Columns and rows that the file asks for; ``Picture`` decides what is traced."""
+
+    @property
+    def aims(self) -> bool:
+        """It looks somewhere, and ``up`` is not along that."""
+        towards, upwards = _scaled(np.subtract(self.at, self.eye)), _scaled(np.array(self.up))
+        sideways = np.linalg.norm(np.cross(towards, upwards))
+        # What overflowed to NaN is no direction either.
+        return bool(sideways > 1e-12 * np.linalg.norm(towards) * np.linalg.norm(upwards))
+
+
+def _scaled(vector: Floats) -> Floats:
+    """The vector with 1 as its largest number, so that squares are neither 0 nor infinite."""
+    largest = np.abs(vector).max()
+    return vector / largest if largest > 0 else vector
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the view of a scene comes from, and what its file says that was not read."""
+
+    camera: str = "its own camera"
+    lights: str = "its own lights"
+    cameras: tuple[tuple[str, Camera], ...] = ()
+    """Those that the file has, with their names."""
+    up: Vector | None = None
+    """What is upwards in its coordinates, if that is known."""
+    notes: tuple[str, ...] = ()
+    """What the file says that was not read, one line each."""
+
+    @property
+    def view(self) -> str:
+        """In words."""
+        return f"seen by {self.camera}, lit by {self.lights}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +186,8 @@ class Scene:
     """From where the picture is taken."""
     background: Vector = (0.0, 0.0, 0.0)
     """Colour of rays that hit nothing."""
+    origin: Origin = Origin()
+    """Where camera and lights come from."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", in_utf8(self.name))

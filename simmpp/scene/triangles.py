@@ -32,17 +32,6 @@ def triangles(obj: SceneObject) -> Floats:
             return np.empty((0, 3, 3))
 
 
-def n_triangles(obj: SceneObject) -> int:
-    """Number of triangles of an object; 0 for spheres and cones."""
-    match obj:
-        case Polygon():
-            return 1 if len(obj.vertices) == 3 else len(polygon_faces(obj.vertices))
-        case MeshPart():
-            return len(obj.faces)
-        case Sphere() | Cone():
-            return 0
-
-
 def polygon_faces(vertices: Floats) -> Faces:
     """Indices (m, 3) int64 of triangles that tile the polygon with these vertices (n, 3)."""
     flat = _dominant_plane(vertices)

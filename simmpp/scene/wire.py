@@ -9,7 +9,10 @@ its faces as triples of 32-bit indices. Message headers come on top, see the mac
 
 from __future__ import annotations
 
-from simmpp.scene.scene import Cone, MeshPart, Polygon, SceneObject, Sphere
+import numpy as np
+
+from simmpp.scene.columns import MESH, POLYGON, Columns, Counts, columns
+from simmpp.scene.scene import SceneObject
 
 PRIMITIVE_BYTES = 128
 """A sphere, a cone or a triangle. ESTIMATE."""
@@ -28,11 +31,13 @@ def bytes_on_the_wire(obj: SceneObject) -> int:
     Sphere, cone and triangle 128; a polygon 24 more per vertex beyond the third and per vertex
     normal; a mesh part 56 + 24 per vertex + 12 per face.
     """
-    match obj:
-        case Sphere() | Cone():
-            return PRIMITIVE_BYTES
-        case Polygon():
-            normals = 0 if obj.normals is None else len(obj.normals)
-            return PRIMITIVE_BYTES + POINT_BYTES * (len(obj.vertices) - 3 + normals)
-        case MeshPart():
-            return MESH_BYTES + POINT_BYTES * len(obj.vertices) + FACE_BYTES * len(obj.faces)
+    return int(sizes_on_the_wire(columns([obj]))[0])
+
+
+def sizes_on_the_wire(objects: Columns) -> Counts:
+    """The same of all objects, (N,) int64."""
+    points = POINT_BYTES * objects.n_vertices
+    polygons = PRIMITIVE_BYTES + points + POINT_BYTES * (objects.n_normals - 3)
+    parts = MESH_BYTES + points + FACE_BYTES * objects.n_faces
+    flat = np.where(objects.kinds == MESH, parts, polygons)
+    return np.where(objects.kinds < POLYGON, PRIMITIVE_BYTES, flat)

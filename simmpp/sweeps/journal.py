@@ -1,7 +1,8 @@
 """Finished simulations of a sweep, on disk one by one: what an interruption can't take away.
 
-``points.jsonl`` begins with a line that says which sweep it is of; each further line is an outcome.
-A line counts when its end is on the disk, so a torn one is the last and was never counted.
+``points.jsonl`` begins with a line that says what its results are of, and has another such line
+whenever a larger sweep is added to it; all other lines are outcomes. A line counts when its end is
+on the disk, so a torn one is the last and was never counted.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from typing import IO, Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import naming
-from simmpp.run.provenance import difference
+from simmpp.sweeps.growth import Identity, conflict, joined
 
 FILE = "points.jsonl"
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclass(frozen=True)
@@ -68,8 +69,8 @@ class Results:
 class Journal(Results):
     """The same in one folder, which whoever opens it has claimed."""
 
-    def __init__(self, folder: Path, identity: Mapping[str, Any]) -> None:
-        """Open or begin the journal; ``identity`` is JSON data that says what the results are of.
+    def __init__(self, folder: Path, identity: Identity) -> None:
+        """Open or begin the journal of results that are of ``identity``, or add to it.
 
         Raises ConfigError if the folder holds the results of another sweep.
         """
@@ -80,7 +81,7 @@ class Journal(Results):
         except OSError as error:
             raise ConfigError(f"can't be written: {error.strerror}", where=str(self.path)) from None
         try:
-            self._read({"format": FORMAT, **identity})
+            self._read(json.loads(json.dumps({"format": FORMAT, **identity})))
         except BaseException:
             self.close()
             raise
@@ -106,39 +107,41 @@ class Journal(Results):
             self._file.flush()
             os.fsync(self._file.fileno())  # a flushed line survives this process, not a power cut
 
-    def _read(self, identity: Mapping[str, Any]) -> None:
+    def _read(self, identity: Identity) -> None:
         self._file.seek(0)
         lines = self._file.read().splitlines(keepends=True)
         if lines and not lines[-1].endswith(b"\n"):
             self._drop(lines.pop())
-        if not lines:
-            self._append(identity)
-            return
+        there: Identity = {}
         for number, line in enumerate(lines, 1):
             try:
                 entry = json.loads(line)
                 if not isinstance(entry, dict):
                     raise TypeError
-                if number == 1:
-                    self._compare(entry, identity)
+                if number == 1 or "format" in entry:
+                    there = entry  # a later one has all that those before it have
                 else:
                     self._take(entry)
             except (TypeError, ValueError, KeyError):
                 problem = "damaged: expected a line of JSON; delete the file to begin anew"
                 raise ConfigError(problem, where=str(self.path), line=number) from None
+        both = self._together(there, identity) if lines else identity
+        if both != there:
+            self._append(both)
 
     def _drop(self, line: bytes) -> None:
         self.notices.append(f"{self.path}: the last line was torn and is dropped")
         self._file.truncate(self._file.tell() - len(line))
         self._file.seek(0, os.SEEK_END)
 
-    def _compare(self, recorded: Mapping[str, Any], identity: Mapping[str, Any]) -> None:
-        if problem := difference(recorded, json.loads(json.dumps(identity))):
+    def _together(self, there: Identity, identity: Identity) -> Identity:
+        if problem := conflict(there, identity):
             raise ConfigError(
                 f"holds results of another sweep ({problem}); expected another --out, or an empty "
                 "folder",
                 where=str(self.path.parent),
             )
+        return joined(there, identity)
 
     def _take(self, entry: dict[str, Any]) -> None:
         if "traced" in entry:

@@ -6,7 +6,6 @@ that a method does not know, a key that someone set and that the sweep sets othe
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -14,15 +13,16 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.places import misplaced
-from simmpp.config.axes import SAME, keys_of
+from simmpp.config.axes import POINTS, SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
 from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
-from simmpp.run.record import record, recorded
+from simmpp.run.record import FAILED, FINISHED, SIMULATIONS, record, recorded
 from simmpp.run.rows import in_order, point_row
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
+from simmpp.sweeps.growth import GROWS, NAMES, SWEPT, Identity, meanings
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.profits import SIMULATION
 from simmpp.sweeps.task import Task, task_of
@@ -72,15 +72,16 @@ class Plan:
         return sorted(tasks.values(), key=lambda t: (first[t.digest], first[t.placement_key]))
 
     @property
-    def identity(self) -> dict[str, Any]:
-        """What must be equal for results to be continued; a reading counts by what it gives."""
-        settings = {key: said for key, said in recorded(self.config).items() if key != READING}
-        keys = "".join(sorted({planned.task.key for planned in self.points}))
+    def identity(self) -> Identity:
+        """What its results are of; a reading counts by what it gives."""
+        config = recorded(self.config).items()
+        policies = dict.fromkeys(planned.point.policy for planned in self.points)
+        rays = dict.fromkeys((p.scene, p.point.config.picture, p.task.digest) for p in self.points)
         return {
             "versions": result_versions(),
-            "config": settings,
-            "workloads": self.workloads,
-            "points": hashlib.sha256(keys.encode()).hexdigest(),
+            "config": {key: said for key, said in config if key not in (*GROWS, READING)},
+            SWEPT: sorted(_swept_everywhere(self.config)),
+            NAMES: meanings(policies, rays, self.config.axes.get(POINTS, ())),
         }
 
     @property
@@ -90,12 +91,18 @@ class Plan:
         pairs = {(planned.scene, planned.task.digest) for planned in self.points}
         return {name: sorted(digest for scene, digest in pairs if scene == name) for name in names}
 
-    @property
-    def record(self) -> dict[str, Any]:
-        """The content of ``run.json``."""
+    def record(self, outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
+        """The content of ``run.json``: what it is of, and how far it is."""
         configs = (planned.point.config for planned in self.points)
         machines = (config.machine_for(config.processors) for config in configs)
-        further = {"simulations": len(self.tasks), "further_columns": list(self.further)}
+        keys = {planned.task.key for planned in self.points}
+        failures = [bool(outcomes[key].error) for key in keys if key in outcomes]
+        further = {
+            SIMULATIONS: len(keys),
+            FINISHED: failures.count(False),
+            FAILED: failures.count(True),
+            "further_columns": list(self.further),
+        }
         return record(self.config, self.workloads, machines, len(self.points), further)
 
     def rows(self, outcomes: Mapping[str, Outcome]) -> list[Row]:

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from itertools import chain
 from pathlib import Path
 from types import NoneType
@@ -17,7 +17,7 @@ from simmpp.common.displayed import Displayed
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, as_arrow, write_csv, write_parquet
-from simmpp.common.folders import SWEEP, claimed
+from simmpp.common.folders import SWEEP, claimed, note_call
 from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
@@ -90,13 +90,16 @@ def run_sweep(
     timeout_s: float | None = None,
     out: str | Path | None = None,
     watcher: Watcher | None = None,
+    call: str = "",
 ) -> SweepResult:
     """Simulate all points of a configuration, given as data or as the name of a YAML file.
 
     Points run in this process, in ``workers`` processes, on the Dask ``cluster`` of that address,
     or on a ``pool`` of one's own, which is closed; rows are the same. With ``out``, a folder,
-    finished points are kept there, a second call continues, and the tables are written as files.
-    One point may take ``timeout_s`` seconds; one that fails has its row with an ``error``.
+    finished points are kept there, a second call continues, and the tables are written as files;
+    one with more seeds, values or policies adds to what is there. Whoever looks at an unfinished
+    folder is told ``call``, the command that goes on. One point may take ``timeout_s`` seconds;
+    one that fails has its row with an ``error``.
     Raises InputError if the configuration is wrong or the folder holds another sweep's results.
     """
     require_kind("config", config, Mapping, Config, str, Path)
@@ -113,6 +116,8 @@ def run_sweep(
         closing(_results(plan, folder)) as results,
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
+        if folder is not None and call:
+            note_call(folder, call)
         tables = _run(plan, results, own, folder, watcher or Watcher())
     return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]), folder)
 
@@ -193,13 +198,14 @@ def run_pending(
 def _trace(plan: Plan, tasks: Iterable[Task], results: Results, watcher: Watcher) -> None:
     """Bring the workloads that are needed into the cache, from where workers share them."""
     scenes = {planned.task.digest: planned.scene for planned in plan.points}
+    say = cache(watcher.notice)  # once, what holds for each picture of a scene
     first_tasks: dict[str, Task] = {}
     for task in tasks:
         first_tasks.setdefault(task.digest, task)
     for digest, task in first_tasks.items():
         began_s = time.perf_counter()
         progress = partial(watcher.tracing, scenes[digest])
-        workload = cache_workload(task.config, digest, progress=progress, notice=watcher.notice)
+        workload = cache_workload(task.config, digest, progress=progress, notice=say)
         if workload is not None:
             keep_workload(workload)
             results.add_trace(digest, time.perf_counter() - began_s)
@@ -223,7 +229,7 @@ def write_tables(plan: Plan, results: Results, folder: Path) -> TablesByFile:
     for name, (rows, columns) in tables.items():
         write_csv(rows, columns, folder / name)
     write_parquet(*tables[RESULTS], folder / PARQUET)
-    write_record(plan.record, folder / RECORD)
+    write_record(plan.record(results.outcomes), folder / RECORD)
     return tables
 
 

@@ -10,8 +10,9 @@ import numpy as np
 
 from simmpp.common.compiled import source_digest
 from simmpp.common.modules import TRACER
-from simmpp.scene.scene import Cone, MeshPart, Scene, SceneObject, Sphere
-from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.scene.columns import columns_of
+from simmpp.scene.scene import Scene
+from simmpp.scene.wire import sizes_on_the_wire
 from simmpp.workload.picture import Picture
 
 
@@ -22,34 +23,28 @@ def digest_of(scene: Scene, picture: Picture) -> str:
     """
     digest = hashlib.sha256()
     for part in _parts(scene, picture):
-        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part.nbytes.to_bytes(8, "little"))
         digest.update(part)
     return digest.hexdigest()
 
 
-def _parts(scene: Scene, picture: Picture) -> Iterator[bytes]:
-    yield repr((source_digest(TRACER), dataclasses.astuple(picture))).encode()
+def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
+    picture = picture.of(scene)
+    _, *settings = dataclasses.astuple(picture)
+    yield memoryview(repr((source_digest(TRACER), picture.pixels, *settings)).encode())
     camera = scene.camera
-    yield _bytes(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
-    yield _bytes(*(x for light in scene.lights if picture.shadows for x in light.position))
+    yield _numbers(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
+    yield _numbers(*(x for light in scene.lights if picture.shadows for x in light.position))
     # Without refraction no ray reads the index, so it must not tell two scenes apart.
     spawned = [(m.reflects, m.transmits, m.ior if m.transmits else 1.0) for m in scene.materials]
-    for obj in scene.objects:
-        yield obj.kind.encode()
-        yield _bytes(bytes_on_the_wire(obj), *spawned[obj.material])
-        yield from _geometry(obj)
+    objects = columns_of(scene)
+    of_materials = np.array(spawned, dtype=np.float64).reshape(-1, 3)
+    yield sizes_on_the_wire(objects).data
+    yield of_materials[objects.materials].data
+    yield from (objects.kinds.data, objects.spheres.data, objects.cones.data)
+    yield from (objects.n_vertices.data, objects.vertices.data)
+    yield from (objects.n_faces.data, objects.faces.data)
 
 
-def _geometry(obj: SceneObject) -> Iterator[bytes]:
-    if isinstance(obj, Sphere):
-        yield _bytes(*obj.centre, obj.radius)
-    elif isinstance(obj, Cone):
-        yield _bytes(*obj.base, obj.base_radius, *obj.apex, obj.apex_radius)
-    else:
-        yield np.asarray(obj.vertices, dtype="<f8").tobytes()
-        if isinstance(obj, MeshPart):
-            yield np.asarray(obj.faces, dtype="<i8").tobytes()
-
-
-def _bytes(*numbers: float) -> bytes:
-    return np.array(numbers, dtype="<f8").tobytes()
+def _numbers(*numbers: float) -> memoryview:
+    return np.array(numbers, dtype=np.float64).data

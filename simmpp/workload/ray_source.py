@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from simmpp.scene.scene import Scene
+from simmpp.scene.scene import Origin, Scene
 from simmpp.workload.picture import Picture
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class RaySource(Protocol):
     def workload(
         self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
     ) -> Workload:
-        """The workload; ``notice`` is told of a cache that is of no use."""
+        """The workload; ``notice`` is told what of scene or cache is not as one might expect."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,18 @@ class SceneSource:
         """From the cache if it was traced before."""
         from simmpp.workload.cache.store import workload_for
 
-        return workload_for(self.scene(), picture, progress=progress, notice=notice)
+        scene = self.scene()
+        if notice:
+            for line in told(scene):
+                notice(line)
+        return workload_for(scene, picture, progress=progress, notice=notice)
+
+
+def told(scene: Scene) -> list[str]:
+    """The view of a scene that brings none, or another than its own, and what was not read."""
+    origin = scene.origin
+    view = [] if origin.view == Origin().view else [origin.view]
+    return [f"{scene.name}: {line}" for line in (*view, *origin.notes)]
 
 
 @dataclass(frozen=True)

@@ -141,11 +141,28 @@ def test_a_baseline_of_ones_own() -> None:
         "--baseline: value 'b/profits.csv': there is no such folder: run with --update to make one"
     )
     done = check("--update")
-    assert (done.exit_code, done.stdout) == (0, "check: baseline of 6 rows in b\n")
+    assert (done.exit_code, done.stdout.splitlines()) == (
+        0,
+        [
+            "check: baseline of 6 rows in b",
+            "next: simmpp check c.yaml --baseline b/profits.csv",
+        ],
+    )
     assert check().exit_code == 0
     assert check("--engine", "simpy").exit_code == 0
     again = check("--update")
     assert again.stdout.splitlines()[0] == "check: no values of the baseline moved"
+
+
+def test_a_baseline_is_named_by_its_folder_before_there_is_one() -> None:
+    for further in (("--update",), ()):
+        done = simmpp("check", "c.yaml", "--baseline", "new", *further)
+        assert done.exit_code == 0, done.output
+    assert Path("new/profits.csv").is_file()
+    assert refused("check", "c.yaml", "--baseline", "new.csv", "--update") == (
+        "--baseline: value 'new.csv': expected a file profits.csv "
+        "(with results.csv and run.json beside it)"
+    )
 
 
 def test_update_says_what_changed(monkeypatch: pytest.MonkeyPatch) -> None:

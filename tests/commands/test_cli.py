@@ -14,7 +14,7 @@ from calls import begin_in, simmpp
 
 from simmpp.commands.parts.options import window_of
 from simmpp.common.errors import ConfigError, ModelError
-from simmpp.common.units import format_ps
+from simmpp.common.units import format_bytes, format_ps
 from simmpp.methods.columns import result_columns
 
 CONFIG = """
@@ -38,11 +38,51 @@ def test_run_prints_every_policy_with_reference_and_ceiling() -> None:
     assert done.exit_code == 0, done.output
     lines = done.stdout.splitlines()
     assert lines[0].startswith("tetra:2: 12 x 12 primary rays")
-    assert lines[3].split() == ["object", "ray", "concurrent", "replicated"]
+    assert ["object", "ray", "concurrent", "replicated"] in [line.split() for line in lines]
     (profit,) = [line for line in lines if line.startswith("time profit")]
     assert profit.split()[2] == "1.000"
     assert any(line.startswith("bound: total compute / 4 = ") for line in lines)
     assert done.stderr == ""
+
+
+def test_run_and_sweep_say_who_wins_before_all_numbers() -> None:
+    done = simmpp("run", "c.yaml")
+    sentence = done.stdout.splitlines()[3]
+    assert sentence.startswith("Send the rays: ray dataflow is fastest; the next, concurrent ")
+    done = simmpp("sweep", "c.yaml", "--workers", "1", "--out", "s")
+    lines = done.stdout.splitlines()
+    assert lines[0] == sentence
+    assert lines[-1] == "next: simmpp report s"
+    assert simmpp("report", "s").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("room", "told"),
+    [
+        ("memory.fraction=1", "the whole scene, 2.048 kB, fits into every memory: nothing has"),
+        ("memory.bytes=2048 B", "the whole scene, 2.048 kB, fits into every memory: nothing has"),
+        ("memory.bytes=640 B", "memory.bytes, 640 B, holds resident objects; with rays and fetch"),
+        ("memory.bytes=2000 B", "everything fits into memory: at most 1.928 kB on a PE, rays"),
+        ("memory.fraction=0.5", None),
+    ],
+)
+def test_run_says_whether_everything_fits(room: str, told: str | None) -> None:
+    few = ("picture={resolution: 1, shadows: false}", "processors=2", "machine.ray_bytes=8 B")
+    done = simmpp("run", "c.yaml", *(f"--set={key}" for key in (*few, room)))
+    notes = done.stdout.split("bound: ")[1].splitlines()
+    assert [note for note in notes if "fits into" in note or note.startswith("memory.bytes")] == [
+        note for note in notes if told and note.startswith(told)
+    ]
+    assert not told or told in done.stdout
+
+
+def test_what_does_not_fit_is_counted() -> None:
+    done = simmpp("run", "c.yaml", "--set", "memory.bytes=640 B", "--out", "out")
+    with open("out/results.csv", newline="") as file:
+        most = {row["policy"]: int(row["peak_bytes"]) for row in csv.DictReader(file)}
+    for policy in ("object", "ray", "concurrent"):
+        size, times = format_bytes(most[policy]), most[policy] / 640
+        assert f"{policy} {size} ({times:.3f} times as much)" in done.stdout
 
 
 @pytest.mark.parametrize("titles", [("keen", "concurrent"), ("keen", "ray", "concurrent")])

@@ -6,6 +6,7 @@ others.
 
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -14,8 +15,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from simmpp.cli import main
 from simmpp.common.compiled import cache_folder
+from simmpp.config.config import load_config
+from simmpp.report.page.folder import read_folder
+from simmpp.report.page.report import report_of, write_page
 from simmpp.sweeps.journal import FILE
 from simmpp.sweeps.sweep import run_sweep
 
@@ -50,18 +56,22 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield folder
 
 
-def begin(folder: Path, out: Path) -> subprocess.Popen[bytes]:
-    """A sweep of two workers whose journal has its first outcome."""
+def begin(folder: Path, out: Path, there: int = 0) -> subprocess.Popen[bytes]:
+    """A sweep of two workers whose journal has its first outcome beyond those ``there``."""
     command = [sys.executable, "-c", PROGRAM, "sweep", "c.yaml"]
     command += ["--workers", "2", "--out", str(out)]
     with open(out.with_suffix(".log"), "wb") as log:
         sweep = subprocess.Popen(
             command, cwd=folder, stdout=log, stderr=log, start_new_session=True
         )
-    while not (out / FILE).exists() or b'"numbers"' not in (out / FILE).read_bytes():
+    while not (out / FILE).exists() or finished(out) <= there:
         assert sweep.poll() is None, out.with_suffix(".log").read_text()
         time.sleep(0.01)
     return sweep
+
+
+def finished(out: Path) -> int:
+    return (out / FILE).read_bytes().count(b'"numbers"')
 
 
 def tables(folder: Path, out: Path) -> dict[str, bytes]:
@@ -102,6 +112,20 @@ def test_killed_and_continued(
     assert tables(folder, out) == expected
 
 
+def test_killed_while_it_grows(folder: Path, expected: dict[str, bytes]) -> None:
+    """Two of the seeds and one of the fractions are there; the rest comes to them."""
+    out = folder / "grown"
+    fewer = load_config(folder / "c.yaml", ["seeds=[1, 0]", "sweep.memory.fraction=[0.4]"])
+    run_sweep(fewer, out=out)
+    sweep = begin(folder, out, there=finished(out))
+    sweep.kill()
+    sweep.wait()
+    told = CliRunner().invoke(main, ["report", str(out)]).output
+    assert re.search(r"simmpp: interrupted: \d+ of 74 simulations are in these tables; ", told)
+    assert f"to go on: cd {folder} && simmpp sweep c.yaml --workers 2 --out {out}\n" in told
+    assert tables(folder, out) == expected
+
+
 def running(session: int) -> bool:
     """Whether processes of the session are left."""
     found = subprocess.run(
@@ -118,7 +142,11 @@ def test_ctrl_c_writes_what_is_finished(folder: Path, expected: dict[str, bytes]
     os.killpg(sweep.pid, signal.SIGINT)
     assert sweep.wait() == 130
     log = out.with_suffix(".log").read_text()
-    assert log.splitlines()[-1] == "simmpp: interrupted"
+    *_, told, last = log.splitlines()
+    assert last == "simmpp: interrupted"
+    call = f"simmpp sweep c.yaml --workers 2 --out {out}"
+    assert re.fullmatch(rf"simmpp: \d+ of \d+ simulations done; to go on: {call}", told)
+    assert "Interrupted: " in write_page(report_of(read_folder(out))).read_text(encoding="utf-8")
     assert "Traceback" not in log
     assert 3 < len((out / "results.csv").read_text().splitlines()) < 109
     assert tables(folder, out) == expected

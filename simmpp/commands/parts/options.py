@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -100,6 +101,11 @@ def engine(help_text: str) -> Callable[[Any], Any]:
 def workers(help_text: str) -> Callable[[Any], Any]:
     """``--workers N``, which the command gets as ``workers``; see :func:`available_cores`."""
     return click.option("--workers", type=Whole(1, 4096), help=help_text)
+
+
+def call() -> str:
+    """The words by which simmpp was called, as a shell takes them."""
+    return shlex.join(click.get_current_context().obj or ())
 
 
 def available_cores() -> int:

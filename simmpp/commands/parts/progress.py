@@ -7,10 +7,11 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
-from simmpp.commands.parts.terminal import notice
+from simmpp.commands.parts.terminal import errors, notice
+from simmpp.common.units import counted
+from simmpp.sweeps.journal import FILE as JOURNAL
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.plan import Plan
 from simmpp.sweeps.profits import best_policy
@@ -25,6 +26,8 @@ BEST_S = 2
 class CountingWatcher(Watcher):
     """Counts the simulations of a sweep."""
 
+    total = done = failed = 0
+
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
         """Begin to count; ``finished`` grows while the sweep runs."""
         self._plan, self._finished = plan, finished
@@ -34,6 +37,8 @@ class CountingWatcher(Watcher):
         self.done, self.failed = self.before, 0
         if self.before:
             notice(f"{self.before} of {self.total} simulations are there from before")
+        if others := len(finished.keys() - keys):
+            notice(f"{counted(others, 'simulation')} of other points stay in {JOURNAL} unused")
 
     def asked(self, tasks: int) -> None:
         """Count what an adaptive sweep adds while it runs, too."""
@@ -47,6 +52,13 @@ class CountingWatcher(Watcher):
     def notice(self, text: str) -> None:
         """Show what the sweep has to say, such as a workload that was not in the cache."""
         notice(text)
+
+    def interrupted(self, call: str) -> None:
+        """Say how far the sweep is, and by which call it goes on."""
+        failed = f", {self.failed} failed" if self.failed else ""
+        on = f"; to go on: {call}" if call else ""
+        if self.total:
+            notice(f"{self.done} of {counted(self.total, 'simulation')} done{failed}{on}")
 
     def more(self) -> str:
         """What failed, and which policy is the fastest so far."""
@@ -106,9 +118,19 @@ class BarWatcher(CountingWatcher):
 
 
 @contextmanager
-def progress_of_sweep() -> Iterator[Watcher]:
-    """Who tells the user how a sweep gets on."""
-    console = Console(stderr=True)
+def progress_of_sweep(call: str = "") -> Iterator[Watcher]:
+    """Who tells the user how a sweep gets on, and if it is interrupted by which call it goes on."""
+    try:
+        with _shown() as watcher:
+            yield watcher
+    except KeyboardInterrupt:
+        watcher.interrupted(call)
+        raise
+
+
+@contextmanager
+def _shown() -> Iterator[CountingWatcher]:
+    console = errors()
     if not console.is_terminal:
         yield LineWatcher()
         return

@@ -7,30 +7,45 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import click
-from rich.table import Table
+from pandas import DataFrame
 
-from simmpp.commands.parts.terminal import FAILED, notice, output
+from simmpp.commands.parts.tables import Fitting, table
+from simmpp.commands.parts.terminal import FAILED, notice, say
 from simmpp.config.settings import Settings
 from simmpp.policy.parameters import REFERENCE
+from simmpp.report.page.folder import read_folder
+from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
+from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.points import points_of
 
 PROFITS_SHOWN = 40
 
 
 def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
-    """Print what came out; the exit code."""
+    """Print who wins, the profits, and what failed; the exit code."""
+    for sentence in _answer(out):
+        say(sentence.text)
+    say()
     rows = result.rows
     failed = rows[rows["error"].notna()]
-    output().print(_table(result))
-    click.echo(f"\n{len(rows)} rows, {len(failed)} failed: {out / 'results.csv'}")
+    say(_table(result))
+    if (more := len(_profits(result)) - PROFITS_SHOWN) > 0:
+        say(f"... {more} more in {out / PROFITS}")
+    say(f"\n{len(rows)} rows, {len(failed)} failed: {out / RESULTS}")
     if settings.tolerance is not None:
         for line in _reached(result, settings.tolerance, settings.max_seeds):
-            click.echo(line)
+            say(line)
     for error, count in failed["error"].value_counts().items():
         notice(f"{count} failed: {error}")
     return FAILED if len(failed) else 0
+
+
+def _answer(out: Path) -> list[Sentence]:
+    """Who wins, as the page of the folder says."""
+    folder = read_folder(out)
+    return answer(points_of(folder.rows, folder.further, folder.profits, folder.labels))
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:
@@ -63,18 +78,24 @@ def _names(result: SweepResult) -> list[str]:
     return [name for name in columns[: columns.index("n")] if name != "effective_fraction"]
 
 
-def _table(result: SweepResult) -> Table:
-    """The first profits; the reference's own say nothing."""
-    profits, names = result.profits[result.profits["policy"] != REFERENCE], _names(result)
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in (*names, "seeds", "time profit", "message profit"):
-        table.add_column(name, no_wrap=True, justify="left" if name in names else "right")
-    for row in profits.head(PROFITS_SHOWN).to_dict("records"):
-        cells = [_cell(row[name]) for name in (*names, "n")]
-        table.add_row(*cells, _profit(row, "time_profit"), _profit(row, "message_profit"))
-    if len(profits) > PROFITS_SHOWN:
-        table.add_row(f"... {len(profits) - PROFITS_SHOWN} more")
-    return table
+def _table(result: SweepResult) -> Fitting:
+    """The first profits."""
+    names = _names(result)
+    rows = [
+        {
+            **{name: _cell(row[name]) for name in names},
+            "seeds": row["n"],
+            "time profit": _profit(row, "time_profit"),
+            "message profit": _profit(row, "message_profit"),
+        }
+        for row in _profits(result).head(PROFITS_SHOWN).to_dict("records")
+    ]
+    return table(rows, n_keys=len(names))
+
+
+def _profits(result: SweepResult) -> DataFrame:
+    """Those of all policies but the reference, whose own say nothing."""
+    return result.profits[result.profits["policy"] != REFERENCE]
 
 
 def _cell(value: object) -> str:

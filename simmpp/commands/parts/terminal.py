@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TextIO
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
+
+from simmpp.commands.parts.tables import Fitting
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
@@ -30,10 +34,33 @@ class _Results(Console):
         raise BrokenPipeError
 
 
-def output() -> Console:
-    """The console of results: plain text, as wide as the terminal."""
-    width = None if _is_terminal(sys.stdout) else WIDTH_OF_A_PIPE
-    return _Results(width=width, highlight=False, markup=False, emoji=False)
+class _Errors(Console):
+    """The console of progress."""
+
+    @property
+    def encoding(self) -> str:
+        """ASCII where the user's language says no more, though Python writes UTF-8 there.
+
+        LC_CTYPE says nothing: Python sets it (PEP 538).
+        """
+        language = os.environ.get("LC_ALL") or os.environ.get("LANG")
+        return "ascii" if language in ("C", "POSIX") else super().encoding
+
+
+def errors() -> Console:
+    """The console of what is no result."""
+    return _Errors(stderr=True)
+
+
+def say(what: str | Fitting = "") -> None:
+    """Print a result: a table, or lines, which are broken between words where they are too wide.
+
+    In a pipe lines stay whole.
+    """
+    people = _is_terminal(sys.stdout)
+    width = None if people else WIDTH_OF_A_PIPE
+    console = _Results(width=width, highlight=False, markup=False, emoji=False)
+    console.print(what, soft_wrap=isinstance(what, str) and not people)
 
 
 def _is_terminal(stream: TextIO | None) -> bool:
@@ -41,29 +68,20 @@ def _is_terminal(stream: TextIO | None) -> bool:
     return stream is not None and stream.isatty()
 
 
-def table(rows: Sequence[Mapping[str, object]]) -> Table:
-    """Rows with the same keys as a table; numbers to the right."""
-    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name, value in (rows[0] if rows else {}).items():
-        grid.add_column(name, justify="left" if isinstance(value, str) else "right", no_wrap=True)
-    for row in rows:
-        grid.add_row(*(f"{v:g}" if isinstance(v, float) else str(v) for v in row.values()))
-    return grid
-
-
-def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Table:
-    """Rows of texts as a table; only columns after the first ``whole`` are broken into lines."""
-    grid = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for number, name in enumerate(names):
-        grid.add_column(name, no_wrap=number < whole)
-    for row in rows:
-        grid.add_row(*row)
-    return grid
-
-
 def notice(text: str) -> None:
     """One line for the user that isn't a result."""
     click.echo(f"simmpp: {text}", err=True)
+
+
+def wrote(*paths: Path) -> None:
+    """Say which files there are now."""
+    if paths:
+        say(f"wrote {', '.join(map(str, paths))}")
+
+
+def go_on(*command: str | Path) -> None:
+    """Say how to go on with what was written: words of a call of simmpp."""
+    click.echo(f"next: {shlex.join(['simmpp', *map(str, command)])}")
 
 
 def announce_compilation(*, simulating: bool = True) -> None:
@@ -97,7 +115,7 @@ def progress_bars() -> Iterator[Progress]:
         BarColumn(),
         TextColumn("{task.percentage:>3.0f} %"),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=errors(),
         transient=True,
         disable=not _is_terminal(sys.stderr),
     )

@@ -11,7 +11,6 @@ from typing import Any
 
 from simmpp.common.files import write_text
 from simmpp.common.folders import is_at_work
-from simmpp.common.units import counted
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
@@ -20,6 +19,7 @@ from simmpp.report.page.figures.groups import FIGURE_GROUPS, FigureGroup
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.origin import facts, origin
+from simmpp.report.page.standing import standing_of, warnings_of
 from simmpp.report.page.template import rendered
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
@@ -97,8 +97,8 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
     return {
         "title": folder.path.resolve().name or "report",
         "facts": facts(folder),
-        "live": _progress(folder) if is_running else "",
-        "warning": _warning(folder),
+        "live": f"running: {standing_of(folder).progress}" if is_running else "",
+        "warnings": warnings_of(folder, is_followed=is_running),
         "sentences": sentences(points) if folder.rows or not folder.bench else [],
         "wins": wins(points),
         "along": {"policy": "", "fraction": "x"}.get(along, along),
@@ -113,20 +113,6 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "made": "Made by simmpp from the rows in this folder; nothing is loaded from anywhere.",
         "data": _data(report, is_running),
     }
-
-
-def _progress(folder: Folder) -> str:
-    failed = f", {len(folder.failed)} failed" if folder.failed else ""
-    return f"running: {len(folder.rows)} of {counted(folder.planned, 'row')} done{failed}"
-
-
-def _warning(folder: Folder) -> str:
-    if not folder.failed:
-        return ""
-    errors = dict.fromkeys(str(row["error"]) for row in folder.failed)
-    first = next(iter(errors))
-    more = f" (and {counted(len(errors) - 1, 'other error')})" if len(errors) > 1 else ""
-    return f"{counted(len(folder.failed), 'row')} failed: {first}{more}"
 
 
 def _verdicts(folder: Folder) -> str:

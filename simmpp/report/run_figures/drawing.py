@@ -190,7 +190,8 @@ def _pixels(figure: Figure, motion: Motion) -> None:
         image = here.imshow(values, cmap=AMOUNTS, interpolation="nearest")
         here.set_title(f"{motion.title}: {title}" if here is axes[0] else title)
         here.set_axis_off()
-        figure.colorbar(image, ax=here, shrink=0.85)
+        rows, columns = values.shape
+        figure.colorbar(image, ax=here, shrink=0.85 * min(1.0, rows / columns))
 
 
 DRAWINGS: dict[str, Callable[[Figure, Motion], None]] = {

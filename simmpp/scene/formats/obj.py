@@ -1,6 +1,7 @@
 """Wavefront OBJ: polygons, objects and the colours of materials.
 
-Each pair of an object (``o``) and a material is a node; groups (``g``) part nothing. Source:
+Each pair of an object (``o``) and a material is a node; groups (``g``) part it if asked
+for. Source:
 Wavefront Technologies, "Object Files (.obj)", Advanced Visualizer manual, appendix B.
 """
 
@@ -17,11 +18,11 @@ from simmpp.scene.formats.colours import as_bytes, matt
 from simmpp.scene.formats.mtl import materials
 from simmpp.scene.formats.polygons import Polygons, triangulated
 from simmpp.scene.formats.text import Source, decoded, floats, integers, named, shown
-from simmpp.scene.node import Node
+from simmpp.scene.node import Content, Node
 from simmpp.scene.scene import Floats, Material
 
 SKIPPED = {
-    *("vt", "vn", "vp", "l", "p", "g", "s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap"),
+    *("vt", "vn", "vp", "l", "p", "s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap"),
     *("maplib", "shadow_obj", "trace_obj", "ctech", "stech", "cstype", "deg", "bmat", "step"),
 }
 """Shading, lines, points, and settings of curves and surfaces: no polygon changes by them."""
@@ -35,10 +36,14 @@ REFUSED = {
 }
 
 
-def nodes(data: bytes, file: Path) -> list[Node]:
-    """The meshes of an OBJ file, by their names."""
+Names = tuple[str, str, str]
+"""Of an object, a group and a material."""
+
+
+def content(data: bytes, file: Path, *, by_group: bool = False) -> Content:
+    """The meshes of an OBJ file, by their names, each group apart with ``by_group``."""
     source = Source(file, "obj")
-    statements = _Statements(source)
+    statements = _Statements(source, by_group)
     statements.read(decoded(data))
     polygons = statements.polygons()
     faces, polygon = triangulated(polygons, source)
@@ -46,24 +51,25 @@ def nodes(data: bytes, file: Path) -> list[Node]:
     order = np.argsort(group, kind="stable")
     limits = np.searchsorted(group[order], np.arange(1, len(statements.names)))
     parts = dict(zip(statements.names, np.split(faces[order], limits), strict=True))
-    return _nodes({names: part for names, part in parts.items() if len(part)}, statements, polygons)
+    used = {names: part for names, part in parts.items() if len(part)}
+    return _content(used, statements, polygons)
 
 
 class _Statements:
     """What has been read so far: words, of which numbers are made all at once."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: Source, by_group: bool) -> None:
+        self.source, self.by_group = source, by_group
         self.coordinates: list[str] = []
         self.colours: list[str] = []
         self.corners: list[str] = []
         self.sizes = array("q")
         self.vertex_lines, self.face_lines, self.name_lines = array("q"), array("q"), array("q")
-        self.object = self.material = ""
-        self.names = {("", ""): 0}
-        """Object and material -> the number of this pair."""
+        self.object = self.group = self.material = ""
+        self.names = {("", "", ""): 0}
+        """Names together -> their number."""
         self.name_numbers = array("q", [0])
-        """The pair before each of ``name_lines``, and after the last."""
+        """The names before each of ``name_lines``, and after the last."""
         self.libraries: list[str] = []
 
     def read(self, text: str) -> None:
@@ -97,6 +103,10 @@ class _Statements:
         match keyword:
             case "o":
                 self.object = name
+            case "g" if not self.by_group:
+                return
+            case "g":
+                self.group = name
             case "usemtl":
                 self.material = name
             case "mtllib":
@@ -105,11 +115,12 @@ class _Statements:
                 problem = REFUSED.get(keyword, "no statement of OBJ")
                 raise self.source.error(f"{shown(keyword)}: {problem}", line)
         self.name_lines.append(line)
-        number = self.names.setdefault((self.object, self.material), len(self.names))
+        names = self.object, self.group, self.material
+        number = self.names.setdefault(names, len(self.names))
         self.name_numbers.append(number)
 
     def groups(self) -> Indices:
-        """Of each face the number of its pair of names."""
+        """Of each face the number of its names."""
         return np.array(self.name_numbers)[np.searchsorted(self.name_lines, self.face_lines)]
 
     def polygons(self) -> Polygons:
@@ -142,24 +153,22 @@ class _Statements:
         return as_bytes(words.reshape(-1, 3))
 
 
-def _nodes(
-    parts: dict[tuple[str, str], Indices], statements: _Statements, polygons: Polygons
-) -> list[Node]:
+def _content(parts: dict[Names, Indices], statements: _Statements, polygons: Polygons) -> Content:
     """The named parts with what the file says of their surfaces."""
     file = statements.source.file
     surfaces: dict[str, Material | None] = {}
     for names in statements.libraries:
         surfaces = materials(names, file.parent) | surfaces
-    several = len(surfaces) > 1 or len({material for _, material in parts}) > 1
+    several = len(surfaces) > 1 or len({material for *_, material in parts}) > 1
     painted = statements.painted()
     meshes = []
-    for (obj, material), faces in parts.items():
+    for (obj, group, material), faces in parts.items():
         surface = surfaces.get(material)
         if surface is None:
             surface = Material() if painted is None else matt(painted[np.unique(faces)])
-        name = "_".join(filter(None, (obj, material if several else ""))) or file.name
+        name = "_".join(filter(None, (obj, group, material if several else ""))) or file.name
         meshes.append(Node(name, polygons.vertices, faces, surface))
-    return sorted(meshes, key=lambda node: node.name)
+    return Content(sorted(meshes, key=lambda node: node.name))
 
 
 def _logical_lines(text: str) -> Iterable[tuple[int, str]]:

@@ -1,4 +1,4 @@
-"""The meshes of a glTF file in their places, in the file's order."""
+"""What a glTF file shows: its meshes in their places, in the file's order, and its view."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from simmpp.scene.gltf.document import compressed, item, parsed
 from simmpp.scene.gltf.places import copies, worlds
 from simmpp.scene.gltf.schema import Document, Primitive
 from simmpp.scene.gltf.surfaces import material
-from simmpp.scene.node import Node, placed
+from simmpp.scene.gltf.views import cameras_in, lights_in
+from simmpp.scene.node import Content, Node, placed
 from simmpp.scene.scene import Floats, Material
 
 TRIANGLES, STRIP = 4, 5
@@ -35,8 +36,8 @@ class _Piece(NamedTuple):
     material: Material
 
 
-def nodes(data: bytes, file: Path) -> list[Node]:
-    """The triangles of a glTF or GLB file: nodes in order of their index, then primitives.
+def content(data: bytes, file: Path) -> Content:
+    """What a glTF or GLB file shows: nodes in order of their index, then primitives.
 
     A primitive is named after its node (its index if it has no name), ``.1`` after it if the mesh
     has several, ``[2]`` if it is an instance. Points and lines have no surface and are left out.
@@ -47,15 +48,19 @@ def nodes(data: bytes, file: Path) -> list[Node]:
         text, chunk = split(data, binary=file.name.lower().removesuffix(".gz").endswith(".glb"))
         document = parsed(text)
         buffers = Buffers(document, chunk, file.parent)
-        return list(_nodes(document, Arrays(document, buffers)))
+        places = worlds(document)
+        nodes = list(_nodes(document, places, Arrays(document, buffers)))
+        cameras, why_not = cameras_in(document, places)
+        lights, suns, of_lights = lights_in(document, places)
+        return Content(nodes, cameras, lights, suns, (*why_not, *of_lights))
     except SceneError as error:
         raise SceneError(error.problem, where=str(file)) from None
 
 
-def _nodes(document: Document, arrays: Arrays) -> Iterator[Node]:
+def _nodes(document: Document, places: dict[int, Floats], arrays: Arrays) -> Iterator[Node]:
     pieces = cache(partial(_pieces, document, arrays))
     objects = triangles = 0
-    for at, world in worlds(document).items():
+    for at, world in places.items():
         node = document.nodes[at]
         if node.mesh is None:
             continue
@@ -128,6 +133,7 @@ def _attribute(arrays: Arrays, primitive: Primitive, name: str, weights: Weights
 
 def _faces(arrays: Arrays, primitive: Primitive, vertices: int) -> Indices:
     """(m, 3) into ``vertices`` vertices."""
+    corners: Indices
     if primitive.indices is None:
         corners = np.arange(vertices)
     else:

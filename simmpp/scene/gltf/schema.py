@@ -1,7 +1,7 @@
-"""What is read of the JSON: where triangles are, and how they look.
+"""What is read of the JSON: where triangles are, how they look, from where, by which light.
 
-Names are the format's, in Python's spelling. What else a file holds (textures, cameras,
-animations, ``extras``) is not looked at; what it says of these is checked before it is used.
+Names are the format's, in Python's spelling. What else a file holds (pictures, animations,
+``extras``) is not looked at; what it says of these is checked before it is used.
 """
 
 from __future__ import annotations
@@ -119,18 +119,26 @@ class Visibility(_Part):
     visible: bool = True
 
 
+class PlacedLight(_Part):
+    """Which light is there."""
+
+    light: Integer
+
+
 class NodeExtensions(_Part):
     """What a node's extensions say."""
 
+    light: PlacedLight | None = Field(default=None, alias="KHR_lights_punctual")
     instancing: Instancing | None = Field(default=None, alias="EXT_mesh_gpu_instancing")
     visibility: Visibility = Field(default=Visibility(), alias="KHR_node_visibility")
 
 
 class Node(_Part):
-    """A place, with or without a mesh there."""
+    """A place, with or without a mesh, a camera or a light there."""
 
     name: str | None = None
     mesh: Integer | None = None
+    camera: Integer | None = None
     skin: Integer | None = None
     children: list[Integer] = []
     matrix: Mat4 | None = None
@@ -145,6 +153,40 @@ class Scene(_Part):
     """Roots of trees of nodes."""
 
     nodes: list[Integer] = []
+
+
+class Perspective(_Part):
+    """What a pinhole camera sees; how wide, the picture decides."""
+
+    yfov: float
+
+
+class Camera(_Part):
+    """A camera, in the place of its node: it looks along -z, with y upwards."""
+
+    name: str | None = None
+    type: str
+    perspective: Perspective | None = None
+
+
+class Punctual(_Part):
+    """A light in the place of its node; one with a direction shines along -z."""
+
+    type: str
+    color: Vec3 = [1.0, 1.0, 1.0]
+    intensity: Annotated[float, Field(ge=0)] = 1.0
+
+
+class Punctuals(_Part):
+    """The lights of a file."""
+
+    lights: list[Punctual] = []
+
+
+class DocumentExtensions(_Part):
+    """What a file's extensions say."""
+
+    punctual: Punctuals = Field(default=Punctuals(), alias="KHR_lights_punctual")
 
 
 class MetallicRoughness(_Part):
@@ -191,6 +233,8 @@ class Document(_Part):
     accessors: list[Accessor] = []
     buffers: list[Buffer] = []
     buffer_views: list[BufferView] = []
+    cameras: list[Camera] = []
+    extensions: DocumentExtensions = DocumentExtensions()
     materials: list[Surface] = []
     meshes: list[Mesh] = []
     nodes: list[Node] = []

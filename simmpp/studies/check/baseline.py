@@ -40,7 +40,7 @@ UPDATE = "run with --update to make one"
 
 def baseline_folder(path: Path) -> Path:
     """The folder of a baseline that is named by its profits.csv or by itself."""
-    if path.is_dir():
+    if path.is_dir() or not (path.suffix or path.exists()):
         return path
     if path.name != PROFITS:
         raise _wrong(path, f"expected a file {PROFITS} (with {RESULTS} and {RECORD} beside it)")

@@ -9,7 +9,7 @@ from simmpp.common.files import Row, write_csv
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config
 from simmpp.model.analytical import Rays, rays_of
-from simmpp.model.border import border_terms, claims
+from simmpp.model.border import SAID, border_terms, claims
 from simmpp.model.costs import Costs, costs_of
 from simmpp.studies.nebel98.figure2_data import (
     ANALYTICAL,
@@ -19,14 +19,8 @@ from simmpp.studies.nebel98.figure2_data import (
     rows_of,
     winner_maps,
 )
-from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, Verdict
+from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, PAPER, Verdict
 from simmpp.workload.workload import Workload
-
-SAID = {
-    "F2a": "object dataflow is best when each PE holds a large part of the scene, ray dataflow "
-    "when a small part",
-    "F2b": "more processors favour object dataflow",
-}
 
 
 def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Verdict]:
@@ -38,7 +32,7 @@ def reproduce_figure2(config: Config, workload: Workload, out: Path) -> list[Ver
     return [
         Verdict(
             claim.claim,
-            f"Nebel 1998, figure 2 (model): {SAID[claim.claim]}",
+            f"{PAPER}figure 2 (model): {SAID[claim.claim]}",
             claim.simulated,
             HOLDS if claim.holds else DOES_NOT,
             by,

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 HOLDS, IN_PART, DOES_NOT = "holds", "in part", "does not"
+PAPER = "Nebel 1998, "
 CLAIM_COLUMNS = ("claim", "paper", "simulated", "holds", "by")
 """Of ``claims.csv``."""
 
@@ -71,7 +72,7 @@ def verdict(claim: str, paper: str, simulated: str, *parts: Part) -> Verdict:
     It holds if all cases of all parts do, and in part if at least half of the cases of each part
     do: a part with a single case, such as "the best scene is Mountain5", holds or does not.
     """
-    return Verdict(claim, f"Nebel 1998, {paper}", simulated, judged(parts), by_what(parts))
+    return Verdict(claim, f"{PAPER}{paper}", simulated, judged(parts), by_what(parts))
 
 
 def judged(parts: Sequence[Part]) -> str:

@@ -21,19 +21,23 @@ FAR = 1e100
 def primary_rays(camera: Camera, picture: Picture, frame: Frame) -> tuple[Floats, Floats]:
     """Origin (3,) and directions (rows * columns, 3) float64 of length 1, normalised.
 
-    The outermost edges of the picture lie at +-tan(angle / 2); the first row is the top one.
+    The upper and lower edge of the picture lie at +-tan(angle / 2), the others as far away as
+    makes pixels squares; the first row is the top one.
     """
     forward, right, up = _basis(camera, frame)
     reach = _tangent(camera.angle_degrees)
-    n = picture.resolution
-    if picture.samples == "corners":
-        steps = (2.0 * np.arange(n + 1) - n) / n
-    else:
-        steps = (2.0 * np.arange(n) + 1.0 - n) / n
-    across = (reach * steps)[None, :, None] * right
-    down = (reach * -steps)[:, None, None] * up
+    rows, columns = picture.pixels
+    across = (reach * _steps(columns, rows, picture))[None, :, None] * right
+    down = (reach * -_steps(rows, rows, picture))[:, None, None] * up
     directions = (forward + down + across).reshape(-1, 3)
     return frame.points(np.array(camera.eye)), _unit(directions)
+
+
+def _steps(n: int, rows: int, picture: Picture) -> Floats:
+    """Places of the samples along a side of ``n`` pixels; half the picture's height is 1."""
+    if picture.samples == "corners":
+        return (2.0 * np.arange(n + 1) - n) / rows
+    return (2.0 * np.arange(n) + 1.0 - n) / rows
 
 
 def _basis(camera: Camera, frame: Frame) -> tuple[Floats, Floats, Floats]:

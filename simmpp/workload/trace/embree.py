@@ -23,12 +23,12 @@ class Intersector:
     """Proposes a hit for each ray; tests put false witnesses in its place."""
 
     def __init__(self, geometry: Geometry) -> None:
-        corners, self._stands_for = proxy_mesh(geometry)
+        vertices, faces, self._stands_for = proxy_mesh(geometry)
         self._box = geometry.box.reshape(1, 6)
         # embree fails on a scene without triangles. "Robust" closes the edges between them.
-        self._scene = EmbreeScene(robust=True) if len(corners) else None
+        self._scene = EmbreeScene(robust=True) if len(faces) else None
         if self._scene is not None:
-            TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))
+            TriangleMesh(self._scene, vertices, faces)
 
     def claims(
         self, origins: NDArray[np.float64], directions: NDArray[np.float64]

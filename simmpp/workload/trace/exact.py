@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
 from simmpp.scene.scene import Vector
-from simmpp.workload.trace.bvh import WIDTH
+from simmpp.workload.trace.bvh_split import WIDTH
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.trace.vectors import cross, dot, minus, moved, vector
 from simmpp.workload.workload import CONE, SPHERE

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import SceneError
-from simmpp.scene.scene import Cone, Scene, SceneObject, Sphere
+from simmpp.scene.columns import CONE, POLYGON, SPHERE, Columns, columns_of
+from simmpp.scene.scene import Scene
 
 Floats = NDArray[np.float64]
 
@@ -59,14 +60,16 @@ def frame_of(scene: Scene) -> Frame:
     """
     if not scene.objects:
         return Frame(np.zeros(3), 1.0)
-    parts = [_input_coordinates(thing) for thing in scene.objects]
-    counts = [len(points) for points, _ in parts]
-    points = np.concatenate([points for points, _ in parts])
-    radii = np.repeat([abs(radius) for _, radius in parts], counts)[:, None]
-    _require_finite(scene.name, counts, np.hstack([points, radii]))
-    origin = points.min(axis=0)
+    points, radii = _ends(columns_of(scene))
+    bad = ~(np.isfinite(points).all(axis=(1, 2)) & np.isfinite(radii))
+    if bad.any():
+        problem = f"object {bad.argmax()} has a coordinate that is not finite"
+        raise SceneError(problem, where=scene.name)
+    origin, reach = points[:, 0].min(axis=0), radii[:, None]
     with np.errstate(over="ignore"):
-        extent = float(((points - origin + radii).max(0) - (points - origin - radii).min(0)).max())
+        high = (points[:, 1] - origin + reach).max(axis=0)
+        low = (points[:, 0] - origin - reach).min(axis=0)
+        extent = float((high - low).max())
     # A power of two changes exponents only, so distances go back to scene units without an error.
     _, exponent = math.frexp(extent)
     if not (math.isfinite(extent) and abs(exponent) <= EXPONENT_LIMIT):
@@ -75,18 +78,20 @@ def frame_of(scene: Scene) -> Frame:
     return Frame(origin, math.ldexp(1.0, -exponent))
 
 
-def _input_coordinates(thing: SceneObject) -> tuple[Floats, float]:
-    """Points (k, 3) float64 that describe an object, and the largest radius around them."""
-    if isinstance(thing, Sphere):
-        return np.array([thing.centre], dtype=np.float64), thing.radius
-    if isinstance(thing, Cone):
-        radius = float(np.abs([thing.base_radius, thing.apex_radius]).max())  # NaN if one is
-        return np.array([thing.base, thing.apex], dtype=np.float64), radius
-    return np.asarray(thing.vertices, dtype=np.float64), 0.0
+def _ends(objects: Columns) -> tuple[Floats, Floats]:
+    """The least and the greatest input coordinates, (N, 2, 3), and radii around them, (N,).
 
-
-def _require_finite(name: str, counts: list[int], coordinates: Floats) -> None:
-    bad = ~np.isfinite(coordinates).all(axis=1)
-    if bad.any():
-        number = int(np.repeat(np.arange(len(counts)), counts)[bad.argmax()])
-        raise SceneError(f"object {number} has a coordinate that is not finite", where=name)
+    Of numbers of which one is not finite, one of both is not.
+    """
+    points, radii = np.empty((len(objects.kinds), 2, 3)), np.zeros(len(objects.kinds))
+    spheres, cones, flat = objects.kinds == SPHERE, objects.kinds == CONE, objects.kinds >= POLYGON
+    points[spheres], radii[spheres] = objects.spheres[:, None, :3], np.abs(objects.spheres[:, 3])
+    base, base_radius, apex, apex_radius = np.split(objects.cones, (3, 4, 7), axis=1)
+    points[cones, 0], points[cones, 1] = np.minimum(base, apex), np.maximum(base, apex)
+    radii[cones] = np.maximum(np.abs(base_radius), np.abs(apex_radius))[:, 0]
+    if flat.any():
+        sizes = objects.n_vertices[flat]
+        starts = np.cumsum(sizes) - sizes
+        points[flat, 0] = np.minimum.reduceat(objects.vertices, starts)
+        points[flat, 1] = np.maximum.reduceat(objects.vertices, starts)
+    return points, radii

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.workload.trace.bvh import WIDTH
+from simmpp.workload.trace.bvh_split import WIDTH
 from simmpp.workload.trace.exact import Ray, Walk, entries, hit_object, hit_triangle, ray_of, row_of
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.trace.ray_batch import RayBatch

@@ -1,4 +1,4 @@
-"""Inscribed polyhedra that stand for spheres and cones in embree, which knows triangles only.
+"""What embree gets: all triangles, and inscribed polyhedra that stand for spheres and cones.
 
 They propose hits, the equations decide. Inscribed, because a ray that leaves a sphere must not be
 stopped by its own proxy; what slips past a proxy hits something behind, which is a bound as well.
@@ -11,41 +11,47 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.trace.geometry import Geometry, corners_of
+from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.workload import CONE, SPHERE
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 
 SIDES = 8
 """Sides of the prism in a cone: 16 triangles, as many as embree tests at little cost."""
 
 
-def proxy_mesh(geometry: Geometry) -> tuple[Floats, NDArray[np.int32]]:
+def proxy_mesh(geometry: Geometry) -> tuple[NDArray[np.float32], Ints, Ints]:
     """All triangles embree gets, and what each stands for.
 
     Returns
     -------
-    corners : (n, 3, 3) float64, normalised
-    stands_for : (n, 2) int32, object and row of the triangle; row -1 for spheres and cones
+    vertices : (n, 3) float32, normalised
+    faces : (m, 3) int32 into them
+    stands_for : (m, 2) int32, object and row of the triangle; row -1 for spheres and cones
     """
-    spheres = np.flatnonzero(geometry.kinds == SPHERE)
-    cones = np.flatnonzero(geometry.kinds == CONE)
-    rows = geometry.shapes.surfaces
-    row_counts = np.maximum(geometry.n_triangles, 1)
-    flat_rows = np.flatnonzero(np.repeat(geometry.n_triangles > 0, row_counts))
-    first = np.cumsum(row_counts) - row_counts
-    corners = [corners_of(rows[flat_rows])]
-    corners += [_in_spheres(rows[first[spheres]]), _in_cones(rows[first[cones]])]
-    owners = [np.repeat(np.arange(len(row_counts)), geometry.n_triangles)]
-    owners += [np.repeat(spheres, len(ICOSAHEDRON)), np.repeat(cones, 2 * SIDES)]
-    stands_for = np.full((sum(map(len, corners)), 2), -1, dtype=np.int32)
+    n_rows = np.maximum(geometry.n_triangles, 1)
+    last = np.cumsum(n_rows) - 1
+    flat_rows = np.flatnonzero(np.repeat(geometry.n_triangles > 0, n_rows))
+    owners = [np.repeat(np.arange(len(n_rows)), geometry.n_triangles)]
+    vertices, faces = [geometry.vertices], [geometry.faces]
+    n_vertices = len(geometry.vertices)
+    for kind, corners_of, sides in ((SPHERE, _in_spheres, ICOSAHEDRON), (CONE, _in_cones, PRISM)):
+        numbers = np.flatnonzero(geometry.kinds == kind)
+        corners = corners_of(geometry.shapes.surfaces[last[numbers]])
+        starts = n_vertices + corners.shape[1] * np.arange(len(numbers))
+        vertices.append(corners.reshape(-1, 3).astype(np.float32))
+        faces.append((starts[:, None, None] + sides).reshape(-1, 3).astype(np.int32))
+        owners.append(np.repeat(numbers, len(sides)))
+        n_vertices += len(vertices[-1])
+    stands_for = np.full((sum(map(len, faces)), 2), -1, dtype=np.int32)
     stands_for[:, 0] = np.concatenate(owners)
     stands_for[: len(flat_rows), 1] = flat_rows
-    return np.concatenate(corners), stands_for
+    return np.concatenate(vertices), np.concatenate(faces), stands_for
 
 
-def _icosahedron() -> Floats:
-    """(20, 3, 3) float64 inscribed in the unit sphere: faces of mutually nearest vertices."""
+def _icosahedron() -> tuple[Floats, Ints]:
+    """Vertices (12, 3) float64 in the unit sphere, faces (20, 3): mutually nearest vertices."""
     golden = (1 + math.sqrt(5)) / 2
     signs = [(s, t * golden) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
     vertices = np.array([np.roll((0.0, s, t), axis) for axis in range(3) for s, t in signs])
@@ -57,20 +63,28 @@ def _icosahedron() -> Floats:
         for k in range(j)
         if near[i, j] and near[j, k] and near[i, k]
     ]
-    corners: Floats = vertices[np.array(faces)] / math.hypot(1.0, golden)
-    return corners
+    return vertices / math.hypot(1.0, golden), np.array(faces, np.int32)
 
 
-ICOSAHEDRON = _icosahedron()
+CORNERS, ICOSAHEDRON = _icosahedron()
+_LOW, _NEXT = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
+PRISM = np.concatenate(
+    [
+        np.stack([_LOW, _NEXT, SIDES + _LOW], axis=1),
+        np.stack([SIDES + _LOW, _NEXT, SIDES + _NEXT], axis=1),
+    ]
+)
+"""(16, 3): its vertices are those around the base, then those around the apex."""
 
 
 def _in_spheres(shapes: Floats) -> Floats:
-    corners = shapes[:, None, None, 3:4] * ICOSAHEDRON + shapes[:, None, None, :3]
-    return corners.reshape(-1, 3, 3)
+    """(n, 12, 3) float64."""
+    corners: Floats = shapes[:, None, 3:4] * CORNERS + shapes[:, None, :3]
+    return corners
 
 
 def _in_cones(shapes: Floats) -> Floats:
-    """Open prisms; around each axis from two directions across it."""
+    """Open prisms, (n, 16, 3); around each axis from two directions across it."""
     base, axis, height, radius, growth = np.split(shapes, (3, 6, 7, 8), axis=1)
     # Any vector across will do, if the cross product with the axis is not small.
     aside = np.where(np.abs(axis[:, :1]) < 0.5, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -83,9 +97,4 @@ def _in_cones(shapes: Floats) -> Floats:
     )
     low = base[:, None] + radius[:, None] * around
     high = (base + height * axis)[:, None] + (radius + growth * height)[:, None] * around
-    next_low, next_high = np.roll(low, -1, axis=1), np.roll(high, -1, axis=1)
-    halves = [
-        np.stack([low, next_low, high], axis=2),
-        np.stack([high, next_low, next_high], axis=2),
-    ]
-    return np.stack(halves, axis=2).reshape(-1, 3, 3)
+    return np.concatenate([low, high], axis=1)

@@ -42,6 +42,7 @@ def traced(scene: Scene, picture: Picture, workload: Workload) -> Traced:
     WorkloadError
         It was made of another scene or picture.
     """
+    picture = picture.of(scene)
     if workload.digest != digest_of(scene, picture):
         raise WorkloadError("the workload is of another scene or picture", where=workload.name)
     frame = frame_of(scene)

@@ -47,7 +47,7 @@ class Lighting(NamedTuple):
 
 
 def render(scene: Scene, picture: Picture, workload: Workload) -> NDArray[np.uint8]:
-    """The picture of the recorded hits, (resolution, resolution, 3) uint8.
+    """The picture of the recorded hits, (rows, columns, 3) uint8.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _gather(
 
 
 def _pixels(colours: Floats, picture: Picture) -> Floats:
-    """(resolution, resolution, 3) float64: a pixel is its centre, or the mean of its corners."""
+    """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners."""
     rows, columns = picture.shape
     samples = colours[: rows * columns].reshape(rows, columns, 3)
     if picture.samples == "centres":

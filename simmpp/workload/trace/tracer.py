@@ -13,10 +13,11 @@ from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
 from simmpp.common.validate import require_kind
-from simmpp.scene.boxes import boxes
+from simmpp.scene.boxes import boxes_of
 from simmpp.scene.check import check_scene
+from simmpp.scene.columns import columns_of
 from simmpp.scene.scene import Scene
-from simmpp.scene.wire import bytes_on_the_wire
+from simmpp.scene.wire import sizes_on_the_wire
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.embree import Intersector
@@ -77,6 +78,7 @@ def trace(
     require_kind("scene", scene, Scene)
     require_kind("picture", picture, Picture)
     check_scene(scene)
+    picture = picture.of(scene)
     rows, columns = picture.shape
     _require_numbers(rows * columns, scene.name)
     _require_memory(rows * columns, scene.name)
@@ -140,9 +142,10 @@ def _workload(
 ) -> Workload:
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
-    kinds, parents, n_children, hits, distances, n_tests, objects = map(_emptied, lists)
+    kinds, parents, n_children, hits, distances, n_tests, itineraries = map(_emptied, lists)
     rows, columns = picture.shape
-    bounds = boxes(scene.objects, frame.origin)
+    objects = columns_of(scene)
+    bounds = boxes_of(objects, frame.origin)
     return frozen(
         Workload(
             name=scene.name,
@@ -156,10 +159,10 @@ def _workload(
             hit_distances=frame.scene_lengths(distances),
             # int64, since the tests of 2^31 rays may be more than 2^31.
             itinerary_offsets=np.cumsum(np.insert(n_tests, 0, 0), dtype=np.int64),
-            itinerary_objects=objects,
+            itinerary_objects=itineraries,
             object_kinds=geometry.kinds,
             object_triangles=geometry.n_triangles,
-            object_bytes=np.array([bytes_on_the_wire(item) for item in scene.objects], np.int64),
+            object_bytes=sizes_on_the_wire(objects),
             object_centroids=frame.rounded(bounds.mean(axis=1)),
         )
     )

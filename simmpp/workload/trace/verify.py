@@ -169,9 +169,9 @@ def _pixel_of(ray: int, replayed: Traced) -> tuple[int, int]:
     """Row and column of the picture that a ray belongs to."""
     workload = replayed.workload
     pixel = int(workload.pixels[min(max(ray, 0), workload.n_rays - 1)])
-    last = replayed.picture.resolution - 1
+    rows, columns = replayed.picture.pixels
     row, column = divmod(pixel, workload.picture[1])
-    return min(row, last), min(column, last)
+    return min(row, rows - 1), min(column, columns - 1)
 
 
 def _colour(pixel: NDArray[np.uint8]) -> tuple[int, int, int]:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from simmpp.scene.nff import read_nff
 from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, Sphere
 from simmpp.scene.spd.generators import nff
-from simmpp.scene.triangles import n_triangles, triangles
+from simmpp.scene.triangles import triangles
 
 TILT = np.linalg.qr(np.array([[1.0, 2, 3], [0, 1, 4], [5, 6, 0]]))[0]
 TILT *= np.sign(np.linalg.det(TILT))
@@ -60,7 +60,7 @@ def test_gear_faces_are_cut_without_loss() -> None:
     faces = [p for p in scene.objects if isinstance(p, Polygon) and len(p.vertices) == 144]
     for face, side in zip(faces, (1, -1), strict=True):
         corners = triangles(face)
-        assert len(corners) == n_triangles(face) == 142
+        assert len(corners) == 142
         areas = triangle_areas(corners)[:, 2] * side
         assert areas.min() > 0
         assert areas.sum() == pytest.approx(area_vector(face.vertices)[2] * side, rel=1e-12)
@@ -93,7 +93,5 @@ def test_mesh_parts_by_faces_and_none_for_curves() -> None:
     vertices = np.arange(12, dtype=np.float64).reshape(4, 3)
     part = MeshPart(vertices, np.array([[0, 1, 2], [3, 2, 0]], dtype=np.int32))
     np.testing.assert_array_equal(triangles(part)[1], vertices[[3, 2, 0]])
-    assert n_triangles(part) == 2
     for curved in (Sphere((0, 0, 0), 1), Cone((0, 0, 0), 1, (0, 0, 1), 0)):
         assert triangles(curved).shape == (0, 3, 3)
-        assert n_triangles(curved) == 0

@@ -94,3 +94,21 @@ def test_a_damaged_line_is_named(tmp_path: Path, line: bytes) -> None:
     (tmp_path / FILE).write_bytes(b"\n".join(lines) + b"\n")
     with pytest.raises(ConfigError, match=rf"{FILE}:3: damaged"):
         Journal(tmp_path, IDENTITY)
+
+
+def grown(folder: Path, **more: object) -> list[str]:
+    identity = {**IDENTITY, "swept": ["processors"], "names": {"policy a": [1]}, **more}
+    Journal(folder, identity).close()
+    return (folder / FILE).read_text().splitlines()
+
+
+def test_a_larger_sweep_is_one_more_line(tmp_path: Path) -> None:
+    assert len(grown(tmp_path)) == len(grown(tmp_path)) == 1
+    assert len(grown(tmp_path, names={"policy a": [1], "policy b": [2]})) == 2
+    assert len(grown(tmp_path, names={"policy b": [2]})) == 2, "what is smaller adds nothing"
+    assert len(grown(tmp_path, config={"seeds": [0, 1], "processors": 9})) == 2
+    *_, last = grown(tmp_path, swept=["memory.fraction"])
+    for part in ('"swept": ["memory.fraction", "processors"]', '"policy a": [1]', '"policy b"'):
+        assert part in last
+    with pytest.raises(ConfigError, match=r"\(policy b is 2 there, 3 now\)"):
+        grown(tmp_path, names={"policy b": [3]})

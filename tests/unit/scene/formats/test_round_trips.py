@@ -13,10 +13,10 @@ from mesh_files import SQUARE, area, corners_of, obj, off, ply, read, stl, stl_t
 
 from simmpp.common.errors import SceneError
 from simmpp.scene import packed
-from simmpp.scene.formats.polygons import are_convex
 from simmpp.scene.mesh import load_mesh
 from simmpp.scene.nff import load_nff, read_nff, write_nff
 from simmpp.scene.scene import Polygon
+from simmpp.scene.tiling import are_convex
 from simmpp.scene.triangles import _dominant_plane, _is_convex, triangles
 
 KEEP = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

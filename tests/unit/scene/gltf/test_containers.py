@@ -6,9 +6,7 @@ import struct
 from pathlib import Path
 
 import pytest
-from gltf_files import glb, one_square, refused
-
-from simmpp.scene.gltf.read import nodes
+from gltf_files import glb, nodes, one_square, refused
 
 WHOLE = one_square().glb()
 

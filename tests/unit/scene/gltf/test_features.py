@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 import trimesh
 from gltf_features import FEATURES, UNIT, instanced, moved
-from gltf_files import File, one_square
+from gltf_files import File, nodes, one_square
 
-from simmpp.scene.gltf.read import nodes
 from simmpp.scene.scene import Floats
 
 

@@ -8,11 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gltf_files import CODES, File
+from gltf_files import CODES, File, nodes
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simmpp.scene.gltf.read import nodes
 
 FORMATS = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "f4": "f"}
 RANGES = {"i1": (-128, 127), "u1": (0, 255), "i2": (-32768, 32767), "u2": (0, 65535)}

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from gltf_features import instanced as instanced_squares
-from gltf_files import SQUARE, File, one_square, refused
+from gltf_files import SQUARE, File, nodes, one_square, refused
 
 from simmpp.scene.gltf import accessors, read
-from simmpp.scene.gltf.read import nodes
 
 Change = Callable[[dict[str, Any]], Any]
 DRACO = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}

@@ -33,7 +33,30 @@ def leaves_below(boxes, bounds, children, node: int = 0) -> list[int]:
 def test_every_box_is_one_leaf(n: int, apart: float) -> None:
     centres = np.random.default_rng(n).integers(0, n, (n, 3)) * apart
     boxes = np.hstack([centres, centres])
-    assert sorted(leaves_below(boxes, *build(boxes))) == list(range(n))
+    tree, _ = build(boxes)
+    assert sorted(leaves_below(boxes, *tree)) == list(range(n))
+
+
+def test_trees_of_rows_follow_the_first() -> None:
+    rows = np.random.default_rng(0).random((300, 3)).repeat(2, axis=0).reshape(300, 6)
+    spans = np.array([(0, 9), (20, 21), (21, 300)])
+    tree, roots = build(rows[:5], rows, spans)
+    assert leaves_below(rows, *tree) == [0, 1, 2, 3, 4]
+    for root, (first, after) in zip(roots, spans, strict=True):
+        assert sorted(leaves_below(rows, *tree, root)) == list(range(first, after))
+
+
+@pytest.mark.parametrize("levels", [1, 2, 3, 4])
+def test_there_is_room_for_the_most_nodes(levels: int) -> None:
+    """Each node has eight children, down to nodes of two leaves."""
+    pairs = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    centres = np.zeros((1, 3))
+    for level in range(levels):
+        centres = (centres[:, None] + pairs * 0.25**level).reshape(-1, 3)
+    boxes = np.hstack([centres - 1e-6, centres + 1e-6]).repeat(2, axis=0)
+    tree, _ = build(boxes)
+    assert sorted(leaves_below(boxes, *tree)) == list(range(len(boxes)))
+    assert len(tree.children) == (4 * len(boxes) - 1) // 7
 
 
 def test_no_bin_is_infinite_or_not_a_number() -> None:

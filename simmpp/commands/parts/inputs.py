@@ -1,0 +1,14 @@
+"""What a command that needs no machine is given: a configuration, or a scene alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from simmpp.config.config import Config, config_from_mapping, load_config
+
+
+def config_of(spec: str, overrides: Sequence[str]) -> Config:
+    """The configuration of that name (.yaml), or one of the scene that ``spec`` names."""
+    if spec.lower().endswith((".yaml", ".yml")):
+        return load_config(spec, overrides)
+    return config_from_mapping({"scene": spec}, overrides)

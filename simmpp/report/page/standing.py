@@ -1,0 +1,99 @@
+"""How far the sweep of a folder is: who looks at half of the rows is told so, and how to go on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from shlex import quote
+from typing import NamedTuple
+
+from simmpp.common.folders import is_at_work, last_call
+from simmpp.common.units import counted
+from simmpp.report.page.folder import Folder
+from simmpp.run.record import FAILED, FINISHED, SIMULATIONS
+
+GOES_ON, TRIES_AGAIN, FOLLOWS = "to go on:", "to try again:", "to follow it:"
+"""What a command is given for."""
+SAME_CALL = "the same call that made the folder"
+"""Where nobody noted it."""
+
+
+class Warned(NamedTuple):
+    """What readers have to know before they believe what they see."""
+
+    text: str
+    call: str = ""
+    """The command that mends it."""
+
+    def __str__(self) -> str:
+        """Both, in one line."""
+        return f"{self.text} {self.call}".rstrip()
+
+
+@dataclass(frozen=True)
+class Standing:
+    """What there is, of what there will be."""
+
+    planned: int
+    finished: int
+    failed: int
+    of: str
+    """What is counted: simulations, or rows where nothing but these is known."""
+    so_far: bool = False
+    """More may be found to be needed."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all is done, be it well or not."""
+        return self.finished + self.failed >= self.planned
+
+    @property
+    def counts(self) -> str:
+        """``"17 of 36 simulations"``."""
+        so_far = " asked for so far" if self.so_far and not self.is_whole else ""
+        return f"{self.finished + self.failed} of {counted(self.planned, self.of)}{so_far}"
+
+    @property
+    def progress(self) -> str:
+        """``"17 of 36 simulations done, 2 failed"``."""
+        return f"{self.counts} done" + (f", {self.failed} failed" if self.failed else "")
+
+
+def standing_of(folder: Folder) -> Standing:
+    """How far a folder is."""
+    record, n_failed = folder.record, len(folder.failed)
+    planned, finished, failed = (record.get(key) for key in (SIMULATIONS, FINISHED, FAILED))
+    if not (isinstance(planned, int) and isinstance(finished, int) and isinstance(failed, int)):
+        return Standing(folder.planned, len(folder.rows) - n_failed, n_failed, "row")
+    config = record.get("config", {})
+    grows = any(config.get(key) for key in ("tolerance", "refine"))
+    return Standing(planned, finished, failed, "simulation", grows)
+
+
+def warnings_of(folder: Folder, *, is_followed: bool = False) -> list[Warned]:
+    """What keeps a folder from being whole; a page that follows a sweep says that it runs."""
+    return list(_warnings(folder, is_followed or is_at_work(folder.path), is_followed))
+
+
+def _warnings(folder: Folder, is_running: bool, is_followed: bool) -> Iterator[Warned]:
+    standing, call = standing_of(folder), last_call(folder.path)
+    there = f"{standing.counts} are in these tables"  # after kill -9 the journal may have more
+    if is_running and not is_followed:
+        yield Warned(f"a sweep runs here: {there}; {FOLLOWS}", _follow(folder.path))
+    elif not standing.is_whole and not is_running:
+        yield Warned(f"interrupted: {there}; {GOES_ON}", call or SAME_CALL)
+    if folder.failed:
+        text, is_over = _failures(folder), standing.is_whole and not is_running
+        yield Warned(f"{text}; {TRIES_AGAIN}", call) if is_over and call else Warned(text)
+
+
+def _follow(path: Path) -> str:
+    return f"simmpp report --live {quote(str(path))}"
+
+
+def _failures(folder: Folder) -> str:
+    errors = dict.fromkeys(str(row["error"]) for row in folder.failed)
+    first = next(iter(errors))
+    more = f" (and {counted(len(errors) - 1, 'other error')})" if len(errors) > 1 else ""
+    return f"{counted(len(folder.failed), 'row')} failed: {first}{more}"
