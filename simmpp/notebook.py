@@ -159,10 +159,10 @@ def _curves(result: SweepResult) -> Iterator[Panel | Bars]:
     """Both profits along the best axis; the plate that shows most."""
     rows = _rows(result.rows)
     points = points_of(rows, further_of(rows), _rows(result.profits))
-    data = ProfitData(points.profits, points.axes)
-    first = {figure.stem.split("-over-")[0]: figure for figure in reversed([*profit_figures(data)])}
-    for measure in MEASURES:
-        figure = first[measure.replace("_", "-")]
+    figures = [*profit_figures(ProfitData(points))]
+    first = {figure.stem.split("-over-")[0]: figure for figure in reversed(figures)}
+    there = (first.get(measure.replace("_", "-")) for measure in MEASURES)
+    for figure in filter(None, there):
         plate = list(figure.plates)[figure.first] if figure.plates else ""
         for panel in figure.plates.get(plate, ()):
             if isinstance(panel, Panel) and panel.curves:

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.progress import progress_of_sweep
 from simmpp.commands.parts.tables import table
 from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say
@@ -50,6 +51,7 @@ MOVED_CSV, OVERLAY = "moved.csv", "profits"
     required=True,
 )
 @click.option("--update", is_flag=True, help="Make what comes out now the baseline.")
+@options.no_code
 @options.path(
     "--out",
     "Folder for what came out: the tables, moved.csv, and curves that moved over the baseline's.",
@@ -67,6 +69,7 @@ def check_command(
     cluster: str | None,
     engine: tuple[str, ...],
     overrides: tuple[str, ...],
+    may_run: bool,
 ) -> None:
     """Compare a sweep with its baseline; exit with 1 if it moved.
 
@@ -79,8 +82,9 @@ def check_command(
         raise ConfigError("expected --update or --set: a baseline is of CONFIG as it is")
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
-    config = load_config(config_path)
-    trial = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, may_run=may_run)
+    trial = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(trial)
     before = None if update else read_baseline(baseline, config)
     target = baseline_folder(baseline)
     options.claim(out, "--out", CHECK)

@@ -12,6 +12,7 @@ import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, wrote
@@ -62,6 +63,7 @@ from simmpp.workload.trace.verify import verify
     "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
 )
+@options.no_code
 @click.option(
     "--verify",
     is_flag=True,
@@ -77,6 +79,7 @@ def run_command(
     window: str | None,
     figures: Path | None,
     verify: bool,
+    may_run: bool,
 ) -> None:
     """Compare dataflow policies at one point.
 
@@ -84,7 +87,8 @@ def run_command(
     Object dataflow is run as the reference of the profits and the replicated scene as the ceiling,
     if they are not named.
     """
-    config = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(config)
     options.writable(picture, "--picture", ".png")
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")

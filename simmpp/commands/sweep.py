@@ -33,6 +33,7 @@ from simmpp.sweeps.executors import start_server
     metavar="SECONDS",
     help="A point that takes longer has failed.",
 )
+@options.no_code
 @options.path("--out", "Folder of the tables.  [default: results/NAME-OF-CONFIG]")
 def sweep_command(
     config_path: Path,
@@ -41,6 +42,7 @@ def sweep_command(
     engine: tuple[str, ...],
     overrides: tuple[str, ...],
     timeout_s: float | None,
+    may_run: bool,
     out: Path | None,
 ) -> None:
     """Simulate every combination of the values under the key sweep.
@@ -56,6 +58,7 @@ def sweep_command(
     if workers > 1 and cluster is None:
         start_server()
     # Not at the top: the server of the workers and this process load numba and the rest at once.
+    from simmpp.commands.parts.own_policies import tell_files
     from simmpp.commands.parts.progress import progress_of_sweep
     from simmpp.commands.parts.sweep_result import print_result
     from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say
@@ -63,7 +66,8 @@ def sweep_command(
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
 
-    config = load_config(config_path, (*overrides, *engine))
+    config = load_config(config_path, (*overrides, *engine), may_run=may_run)
+    tell_files(config)
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()

@@ -6,7 +6,7 @@ No float holds a quantity: text becomes a fraction, and the fraction an integer,
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -167,28 +167,29 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-_TIMES = [("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1)]
-_SIZES = [("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1)]
+TIMES = (("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1))
+SIZES = (("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1))
+"""Units of what is counted in ps and in bytes, the largest first."""
 
 
-def _with_prefix(number: int, units: list[tuple[str, int]]) -> str:
+def _with_prefix(number: int, units: Sequence[tuple[str, int]]) -> str:
     unit, size = next((u for u in units if number >= u[1]), units[-1])
     return f"{number / size:.6g} {unit}"
 
 
-def _exactly(number: int, units: list[tuple[str, int]]) -> str:
+def _exactly(number: int, units: Sequence[tuple[str, int]]) -> str:
     unit, size = next((u for u in units if number >= u[1]), units[-1])
     return f"{Decimal(number) / size:f} {unit}"
 
 
 def write_ps(time_ps: int) -> str:
     """The text that ``picoseconds`` makes this number of; so the others, and all digits."""
-    return _exactly(time_ps, _TIMES)
+    return _exactly(time_ps, TIMES)
 
 
 def write_bytes(size_bytes: int) -> str:
     """64000000 -> ``"64 MB"``."""
-    return _exactly(size_bytes, _SIZES)
+    return _exactly(size_bytes, SIZES)
 
 
 def write_bytes_per_s(rate: int) -> str:
@@ -198,12 +199,12 @@ def write_bytes_per_s(rate: int) -> str:
 
 def format_ps(time_ps: int) -> str:
     """12000000 -> ``"12 us"``: for people, up to six digits."""
-    return _with_prefix(time_ps, _TIMES) if time_ps else "0 s"
+    return _with_prefix(time_ps, TIMES) if time_ps else "0 s"
 
 
 def format_bytes(size_bytes: int) -> str:
     """64000000 -> ``"64 MB"``: for people, up to six digits."""
-    return _with_prefix(size_bytes, _SIZES)
+    return _with_prefix(size_bytes, SIZES)
 
 
 def format_bytes_per_s(rate: int) -> str:

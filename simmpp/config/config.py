@@ -18,6 +18,7 @@ from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.defaults import READING, filled, lines_used
 from simmpp.config.overrides import Places, override, set_key
+from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.machine import Machine
@@ -36,6 +37,8 @@ class Source:
     data: dict[str, Any]
     places: Places
     folder: Path
+    may_run: bool = True
+    """Files of policies may be run."""
 
 
 @dataclass(frozen=True)
@@ -107,8 +110,10 @@ class Config:
         return self.settings.memory
 
 
-def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
+def load_config(path: str | Path, overrides: Sequence[str] = (), *, may_run: bool = True) -> Config:
     """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+
+    The files of policies that it names are run, if they may.
 
     Raises ConfigError, one line with file, line, key, value and what was expected.
     """
@@ -122,7 +127,8 @@ def load_config(path: str | Path, overrides: Sequence[str] = ()) -> Config:
     if not isinstance(document.data, dict):
         raise ConfigError("expected keys with values, such as 'scene: mountain:5'", where=where)
     places: Places = {key: (where, line) for key, line in document.lines.items()}
-    return _checked(document.data, places, Path(path).parent, overrides)
+    source = Source(document.data, places, Path(path).parent, may_run)
+    return _checked(source, overrides)
 
 
 def config_from_mapping(
@@ -138,7 +144,7 @@ def config_from_mapping(
         raise ConfigError(f"value {shown(mapping)}: expected a mapping of keys to values")
     data = copy.deepcopy(dict(mapping))
     places: Places = {(str(key),): ("", None) for key in data} if overrides else {}
-    return _checked(data, places, folder, overrides)
+    return _checked(Source(data, places, folder), overrides)
 
 
 def with_key(config: Config, key: str, value: object) -> Config:
@@ -146,16 +152,14 @@ def with_key(config: Config, key: str, value: object) -> Config:
     source = config.kept_source
     data, places = copy.deepcopy(source.data), dict(source.places)
     set_key(data, key, value, places, ("", None))
-    return _checked(data, places, source.folder)
+    return _checked(Source(data, places, source.folder, source.may_run))
 
 
-def _checked(
-    data: dict[str, Any], places: Places, folder: Path, overrides: Sequence[str] = ()
-) -> Config:
+def _checked(source: Source, overrides: Sequence[str] = ()) -> Config:
     """The configuration, once it and all values that are swept are found right."""
     for assignment in overrides:
-        override(data, assignment, places)
-    config = _structured(data, places, folder)
+        override(source.data, assignment, source.places)
+    config = _structured(source)
     axes = config.axes
     first = dict.fromkeys(axes, 0)
     point_at(config, axes, first)
@@ -193,14 +197,18 @@ def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) 
     places = {path: place for path, place in source.places.items() if path[:1] != ("sweep",)}
     for key, value, path in assignments:
         set_key(data, key, copy.deepcopy(value), places, _nearest(source.places, path))
-    return _structured(data, places, source.folder)
+    return _structured(Source(data, places, source.folder, source.may_run))
 
 
-def _structured(data: dict[str, Any], places: Places, folder: Path) -> Config:
+def _structured(source: Source) -> Config:
+    data, places, folder = source.data, source.places, source.folder
     reading = _reading_of(data, places, folder)
-    settings = structure(Settings, filled(data, reading), places)
+    read = with_files(
+        data, places, lambda path: _folder_of([path], places, folder), may_run=source.may_run
+    )
+    settings = structure(Settings, filled(read, reading), places)
     scenes = _folder_of([("scene", key) for key in (*FILES, "parts")], places, folder)
-    return Config(settings, scenes, reading, Source(data, places, folder))
+    return Config(settings, scenes, reading, source)
 
 
 def _reading_of(data: Mapping[str, Any], places: Places, folder: Path) -> Reading:

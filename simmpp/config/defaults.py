@@ -49,7 +49,7 @@ def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], 
             used |= dict.fromkeys(f"{part}.{key}" for key in new)
     policies: list[Any] = []
     for entry in long_policies(data.get(POLICY, {"name": DEFAULT_POLICY})):
-        if isinstance(entry, dict):
+        if isinstance(entry, dict) and entry.get("file") is None:
             name = str(entry.get("name", DEFAULT_POLICY))
             new = _missing(entry, reading.policies.get(name, {}), POLICY)
             used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in new)

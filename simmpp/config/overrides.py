@@ -56,6 +56,8 @@ def _children(
     within: KeyPath, node: dict[str, Any], part: str, path: KeyPath
 ) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
     """The mappings under a key, written out; several where it holds a list of policies."""
+    if path == ("policy", "set") and node.get("file") is None:
+        return  # only policies of one's own have numbers of their own
     if node.get(part) is None:
         node[part] = {"name": DEFAULT_POLICY} if path == ("policy",) else {}
     elif path in _LONG_FORMS:
@@ -85,6 +87,8 @@ def key_path(key: str, place: Place = ("", None)) -> tuple[str, ...]:
     parts = tuple(key.split("."))
     model: Any = Settings
     for depth, part in enumerate(parts):
+        if parts[:depth] == ("policy", "set") and depth == len(parts) - 1:
+            return parts  # whatever the policy's file calls them
         known = sorted(fields_of(model)) if model else []
         if part not in known:
             within = ".".join(parts[:depth])

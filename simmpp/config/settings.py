@@ -36,6 +36,7 @@ from simmpp.machine.presets import DEFAULT_PRESET, preset_names
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import NAME, POLICIES, PolicyParameters
+from simmpp.policy.policy import Policy
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import SceneKey
 
@@ -97,9 +98,15 @@ class MachineSettings(Constants):
 
 
 def long_policies(value: object) -> list[object]:
-    """One policy is a list of one, and a name alone a mapping."""
+    """One policy is a list of one, and a name or an object of Python alone a mapping."""
     entries = value if isinstance(value, list | tuple) else [value]
-    return [{"name": entry} if isinstance(entry, str) else entry for entry in entries]
+    return [_long(entry) for entry in entries]
+
+
+def _long(entry: object) -> object:
+    if isinstance(entry, Policy):
+        return {"file": entry}
+    return {"name": entry} if isinstance(entry, str) else entry
 
 
 def policies(value: object) -> object:

@@ -30,9 +30,12 @@ from simmpp.machine.machine import Machine
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
-from simmpp.policy.hooks import NUMBERS, VIEW, address_of, groups_read, knows_loads, reads
+from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Policy
+from simmpp.policy.reads import groups_read, knows_loads, reads
+from simmpp.policy.record import VIEW
+from simmpp.policy.view import NUMBERS
 from simmpp.workload.workload import Workload
 
 

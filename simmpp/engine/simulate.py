@@ -8,6 +8,7 @@ from dataclasses import replace
 from simmpp.common.validate import require_kind, require_word
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
+from simmpp.engine.hook_errors import told_of_hooks
 from simmpp.engine.initial import new_state
 from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -17,6 +18,7 @@ from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters, policy_of
+from simmpp.policy.policy import Policy
 from simmpp.workload.workload import Workload
 
 ENGINES: dict[str, type[SimpyRun] | type[CompiledRun]] = {
@@ -31,7 +33,7 @@ def simulate(
     workload: Workload,
     machine: Machine,
     placement: Placement,
-    policy: PolicyParameters | str,
+    policy: PolicyParameters | Policy | str,
     *,
     engine: str = DEFAULT_ENGINE,
     ready_order: str = "depth-first",
@@ -41,12 +43,13 @@ def simulate(
 ) -> Result:
     """Replay a workload on a simulated machine.
 
-    A policy's name stands for it with its defaults. ``seed`` is that of the random numbers that a
-    policy may be given. ``record`` says what is noted besides the
+    A policy's name stands for it with its defaults, and so does a policy of one's own. ``seed`` is
+    that of the random numbers that a policy may be given. ``record`` says what is noted besides the
     totals. ``progress`` is called now and then with the number of rays left.
 
-    Raises ConfigError or WorkloadError on arguments that do not fit together, ModelError if rays
-    are left and nothing is scheduled (a bug, or a policy that starves).
+    Raises ConfigError or WorkloadError on arguments that do not fit together, ConfigError for an
+    exception in a hook of a policy, with file and line, ModelError if rays are left and nothing is
+    scheduled (a bug, or a policy that starves).
     """
     policy = policy_of(policy)
     _check(workload, machine, placement, engine, ready_order)
@@ -64,7 +67,8 @@ def simulate(
     )
     run = ENGINES[engine](state, progress)
     try:
-        run.run()
+        with told_of_hooks(policy, state):
+            run.run()
     except OverflowError:
         raise beyond_the_clock() from None
     state.close_log()

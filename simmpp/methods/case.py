@@ -23,6 +23,8 @@ class Case:
     """x."""
     engine: str
     ready_order: str
+    seed: int
+    """Of the random numbers that the policy is given."""
     place: Callable[[], Placement]
     """Draws the placement, once; a method that needs none does not pay for it."""
     tick: Callable[[int], None]

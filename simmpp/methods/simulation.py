@@ -19,6 +19,7 @@ def simulation(case: Case) -> dict[str, int]:
         case.policy,
         engine=case.engine,
         ready_order=case.ready_order,
+        seed=case.seed,
         progress=case.tick,
     )
     return integers(result)

@@ -6,21 +6,24 @@ for each number of its own.
 
 from __future__ import annotations
 
-from contextlib import suppress
 from fractions import Fraction
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 from pydantic import (
     AliasPath,
     Field,
+    InstanceOf,
     SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
     model_serializer,
+    model_validator,
 )
 from pydantic.json_schema import SkipJsonSchema
+from pydantic_core import ArgsKwargs
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.places import unknown
 from simmpp.common.quantities import TIME, Time
 from simmpp.common.strict import (
     Expect,
@@ -31,16 +34,28 @@ from simmpp.common.strict import (
     in_words,
     integer,
     mistake,
-    only,
     parsed_by,
 )
-from simmpp.common.units import picoseconds, share, shown
-from simmpp.common.validate import MOST_COUNT, whole
+from simmpp.common.units import shown
+from simmpp.common.validate import MOST_COUNT
 from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
+from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
 from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
 from simmpp.policy.policy import Packing, Policy
 from simmpp.policy.ray_dataflow import RAY_DATAFLOW
 from simmpp.policy.replicated import REPLICATED
+from simmpp.policy.written import (
+    FILE,
+    LOAD_INFO,
+    MIN_LOAD,
+    NUMBERS,
+    LoadInfo,
+    own_policy,
+    parse_load,
+    parse_load_info,
+    parse_min_load,
+    parse_numbers,
+)
 
 POLICIES: dict[str, Policy] = {
     "object": OBJECT_DATAFLOW,
@@ -55,39 +70,17 @@ CLASSICAL = ("object", "ray")
 DEFAULT_POLICY = "concurrent"
 """What a configuration that names none compares with object dataflow."""
 
-LoadInfo = Literal["piggyback", "exact", "none"]
 
-_LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
-_MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
-
-
-def _min_load(value: object) -> Fraction | int:
-    """A share of n0 / nb (Fraction) or a number of rays (int), as users write it."""
-    if isinstance(value, Fraction) or (isinstance(value, str) and set("%/") & set(value)):
-        return share(value)
-    return _load(value, _MIN_LOAD)
+class _OwnName(str):
+    """The name of a policy that a file gives."""
 
 
-def _load(
-    value: object, expected: str = f"a Fraction or an integer from 0 to {MOST_COUNT}"
-) -> Fraction | int:
-    """The same, as Python may pass it."""
-    try:
-        if isinstance(value, Fraction) and 0 <= value <= MOST_COUNT:
-            return value
-        return whole(value, 0, MOST_COUNT)
-    except ConfigError:
-        raise ConfigError(f"value {shown(value)}: expected {expected}") from None
-
-
-def _load_info(value: object) -> object:
-    """One of the words; ``{refresh: 5 ms}`` is piggyback, and sets ``refresh_ps`` as well."""
-    if isinstance(value, dict) and set(value) == {"refresh"}:
-        with suppress(ConfigError):
-            picoseconds(value["refresh"])
-            return "piggyback"
-    if not isinstance(value, str) or value not in get_args(LoadInfo):
-        raise ConfigError(f"value {shown(value)}: expected {_LOAD_INFO}")
+def _name(value: object) -> object:
+    """One of the package's policies, as there are then: Python may add some."""
+    if isinstance(value, _OwnName):
+        return str(value)
+    if not isinstance(value, str) or value not in POLICIES:
+        raise ConfigError(f"value {shown(value)}: expected {in_words(tuple(POLICIES))}")
     return value
 
 
@@ -101,10 +94,8 @@ _REFRESH_SCHEMA = {
     "required": ["refresh"],
     "additionalProperties": False,
 }
-_NAMES = only(
-    lambda name: isinstance(name, str) and name in POLICIES,  # as it is then: Python may add some
-    Expect(in_words(tuple(POLICIES)), {"enum": list(POLICIES)}),
-)
+_NAMES = parsed_by(_name), Expect(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
+_OWN = Expect(FILE, {"type": "string", "minLength": 1})
 RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
 
 
@@ -118,8 +109,8 @@ class PolicyParameters:
     """Name in tables and rows; the policy's name when not given."""
     min_load: Annotated[
         Fraction | int,
-        parsed_by(_min_load, _load),
-        Expect(_MIN_LOAD, _MIN_LOAD_SCHEMA, "% or rays"),
+        parsed_by(parse_min_load, parse_load),
+        Expect(MIN_LOAD, _MIN_LOAD_SCHEMA, "% or rays"),
     ] = Fraction(12, 100)
     """The paper's minimal load, above which rays may be sent (concurrent)."""
     batch: RayCount = 256
@@ -129,8 +120,8 @@ class PolicyParameters:
     (concurrent)."""
     load_info: Annotated[
         LoadInfo,
-        parsed_by(_load_info),
-        Expect(_LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
+        parsed_by(parse_load_info),
+        Expect(LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
     ] = "piggyback"
     """How a PE knows the load of others: from headers (the paper), exactly, or not at all; with
     `refresh`, its own load is also sent to peers that were sent nothing for that long."""
@@ -143,6 +134,18 @@ class PolicyParameters:
     packing: Packing = "none"
     """What goes to one PE at one dispatch in one message: nothing, its requests (and the answers to
     them), or all, rays with requests (the mixed dataflow of Nebel 1997)."""
+
+    file: Annotated[
+        InstanceOf[PolicyFile] | InstanceOf[Policy] | None, parsed_by(own_policy), _OWN
+    ] = None
+    """A policy of one's own in place of a `name`: a Python file with `POLICY = Policy(...)`, which
+    is run (see `simmpp policy`)."""
+    set: Annotated[
+        tuple[tuple[str, int], ...] | None,
+        parsed_by(parse_numbers),
+        Expect(NUMBERS, {"type": "object"}),
+    ] = None
+    """The policy's own numbers that are not to be what its file says."""
 
     if TYPE_CHECKING:  # arguments take more than fields hold
 
@@ -157,26 +160,66 @@ class PolicyParameters:
             refresh_ps: int | str | None = ...,
             merge_requests: bool = ...,
             packing: Packing = ...,
+            file: str | PolicyFile | Policy | None = ...,
+            set: dict[str, int | str] | None = ...,
         ) -> None: ...
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named_by_its_file(cls, given: Any) -> Any:
+        """A policy of one's own says its name itself."""
+        keys = (given.kwargs or {}) if isinstance(given, ArgsKwargs) else given
+        if not isinstance(keys, dict) or keys.get("file") is None:
+            return given
+        try:
+            own = own_policy(keys["file"])
+        except ConfigError:  # told by the field
+            return given
+        policy = _policy(own)
+        if keys.get("name", policy.name) != policy.name or policy.name in POLICIES:
+            return given
+        named = {**keys, "file": own, "name": _OwnName(policy.name)}
+        return ArgsKwargs(given.args, named) if isinstance(given, ArgsKwargs) else named
 
     @field_validator("packing")
     @classmethod
     def _can_pack(cls, packing: Packing, others: ValidationInfo) -> Packing:
         policy = POLICIES.get(others.data.get("name", ""))
-        if policy is not None and packing not in policy.packings:
-            expected = f"{in_words(policy.packings)} for {policy.name}"
-            raise mistake(f"value {shown(packing)}: expected {expected}")
+        if policy is not None:
+            _refuse_packing(packing, policy)
         return packing
+
+    @field_validator("file")
+    @classmethod
+    def _alone(cls, file: PolicyFile | Policy | None, others: ValidationInfo) -> Any:
+        if file is not None and (name := _policy(file).name) != others.data.get("name"):
+            if name in POLICIES:
+                raise mistake(f"its policy is called {name!r}: expected no name of the package's")
+            raise mistake(f"its policy is called {name!r}: expected no other name beside it")
+        if file is not None and "packing" in others.data:
+            _refuse_packing(others.data["packing"], _policy(file))
+        return file
+
+    @field_validator("set")
+    @classmethod
+    def _are_its_own(cls, numbers: Any, others: ValidationInfo) -> Any:
+        own = others.data.get("file")
+        known = _policy(own).parameters if own else {}
+        for name, _ in numbers or ():
+            if name not in known:
+                has_none = f"{others.data.get('name')} has no numbers of its own"
+                raise mistake(unknown(name, sorted(known)) if known else has_none)
+        return numbers
 
     @property
     def rules(self) -> Policy:
         """The policy itself."""
-        return POLICIES[self.name]
+        return POLICIES[self.name] if self.file is None else _policy(self.file)
 
     @property
     def numbers(self) -> tuple[int, ...]:
         """Its own numbers, in their order."""
-        return tuple(self.rules.parameters.values())
+        return tuple({**self.rules.parameters, **dict(self.set or ())}.values())
 
     @property
     def packs(self) -> bool:
@@ -193,16 +236,42 @@ class PolicyParameters:
         plain: dict[str, Any] = handler(self)
         if refresh := plain.pop("refresh_ps", None):
             plain["load_info"] = {"refresh": refresh}
-        return plain
+        return {key: plain[key] for key in plain if key not in ("file", "set")} | self.own
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """What is to be known of a policy of one's own: where it is from, and its digest."""
+        if self.file is None:
+            return {}
+        numbers = dict(zip(self.rules.parameters, self.numbers, strict=True))
+        path, digest = "(an object of Python)", ""
+        if isinstance(self.file, PolicyFile):
+            path, digest = self.file.path, self.file.digest
+        return {"file": path, "digest": digest or digest_of(self.rules), "set": numbers}
 
 
-def policy_of(policy: PolicyParameters | str, argument: str = "policy") -> PolicyParameters:
+def _refuse_packing(packing: Packing, policy: Policy) -> None:
+    if packing not in policy.packings:
+        expected = f"{in_words(policy.packings)} for {policy.name}"
+        raise mistake(f"value {shown(packing)}: expected {expected}")
+
+
+def _policy(own: Any) -> Policy:
+    """The policy of a file, or itself."""
+    return policy_of_file(own) if isinstance(own, PolicyFile) else own
+
+
+def policy_of(
+    policy: PolicyParameters | Policy | str, argument: str = "policy"
+) -> PolicyParameters:
     """The policy, or the one of that name with its defaults, as Python callers pass either.
 
     Raises ConfigError, which names the argument, for what is none.
     """
     if isinstance(policy, PolicyParameters):
         return policy
+    if isinstance(policy, Policy):
+        return PolicyParameters(file=policy)
     if not isinstance(policy, str) or policy not in POLICIES:
         expected = f"{in_words(tuple(POLICIES))}, or PolicyParameters"
         raise ConfigError(f"{argument}: value {shown(policy)}: expected {expected}")

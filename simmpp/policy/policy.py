@@ -14,7 +14,7 @@ from typing import Literal, TypeVar
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
-from simmpp.policy.view import WORDS, View
+from simmpp.policy.view import NUMBERS, WORDS, View
 
 Hook = Callable[[View], int]
 """What it returns says the field of Policy that holds it."""
@@ -49,10 +49,16 @@ class Policy:
     """Every object is in the memory of every PE."""
 
     def __post_init__(self) -> None:
-        for what, function in (("send", self.send), ("ask", self.ask)):
-            if function is not None:
-                _require_hook(f"policy {self.name!r}: {what}", function)
+        for what, function in self.hooks.items():
+            _require_hook(f"policy {self.name!r}: {what}", function)
         _require_numbers(self.name, self.parameters)
+        _require_counts(self)
+
+    @property
+    def hooks(self) -> dict[str, Hook]:
+        """Those that it has, by what they are asked."""
+        both = {"send": self.send, "ask": self.ask}
+        return {what: function for what, function in both.items() if function is not None}
 
     @property
     def sends(self) -> bool:
@@ -91,6 +97,15 @@ def _require_hook(where: str, function: object) -> None:
         return
     name = getattr(function, "__name__", shown(function))
     raise ConfigError(f"{where}: value {name}: expected a function of one argument, the view")
+
+
+def _require_counts(policy: Policy) -> None:
+    names = (*NUMBERS, *policy.parameters)
+    for what, count in (("batch", policy.batch), ("ask_at_least", policy.ask_at_least)):
+        if count in names or (type(count) is int and count >= 1):
+            continue
+        expected = f"expected a count from 1 on, or one of {', '.join(names)}"
+        raise ConfigError(f"policy {policy.name!r}: {what}: value {shown(count)}: {expected}")
 
 
 def _require_numbers(name: str, numbers: Mapping[str, int]) -> None:

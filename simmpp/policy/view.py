@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 WORDS = 8
 """Numbers in ``parameter`` and in ``memory``."""
+NUMBERS = ("min_load", "batch", "ask_at_least")
+"""Numbers of ``PolicyParameters``, which every policy has."""
 
 
 class View:

@@ -107,6 +107,7 @@ def run_point(
             parameters,
             engine=settings.engine,
             ready_order=settings.ready_order,
+            seed=point.seed,
             record=replace(record, log=log_of(parameters) or False),
             progress=progress and partial(progress, parameters.title),
         )

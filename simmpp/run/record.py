@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from simmpp.common.files import write_text
 from simmpp.config.config import Config, described
 from simmpp.machine.machine import Machine
 from simmpp.methods.simulation import integers
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.run.provenance import all_versions
@@ -74,9 +75,16 @@ def record_of_run(point: Point, runs: Sequence[PolicyRun]) -> dict[str, Any]:
     return record(point.config, workloads, [point.machine], len(runs), further)
 
 
+def _parameters(policy: PolicyParameters) -> dict[str, Any]:
+    """What was set of a policy; of one's own, its file's digest as well."""
+    said = {field.name: getattr(policy, field.name) for field in fields(policy)}
+    del said["file"], said["set"]
+    return said | {"min_load": str(policy.min_load)} | policy.own
+
+
 def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str, Any]:
     result, base, ceiling = run.result, reference_of(runs).result, ceiling_of(runs)
-    parameters = asdict(run.parameters) | {"min_load": str(run.parameters.min_load)}
+    parameters = _parameters(run.parameters)
     share = utilisation(run)
     return {
         "policy": run.parameters.title,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,8 +12,9 @@ from simmpp.config.config import Config
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
-from simmpp.policy.hooks import NUMBERS, knows_loads, reads
 from simmpp.policy.parameters import CEILING, PolicyParameters
+from simmpp.policy.reads import knows_loads, reads
+from simmpp.policy.view import NUMBERS
 from simmpp.sweeps.grid import GridPoint
 
 
@@ -45,7 +46,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
-    is_drawn = METHODS[settings.method].is_placed and draws(memory, rules)
+    is_drawn = draws(memory, rules) or reads(policy.rules, "random")
+    is_drawn = is_drawn and METHODS[settings.method].is_placed
     seed = point.seed if is_drawn else 0
     constants = asdict(replace(config.machine_for(config.processors), sources={}))
     machine = {name: value for name, value in constants.items() if name not in ("name", "sources")}
@@ -53,7 +55,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(
-        key=_hash(place, asdict(policy), settings.ready_order, settings.method, settings.engine),
+        key=_hash(place, _decides(policy), settings.ready_order, settings.method, settings.engine),
         placement_key=place,
         digest=digest,
         config=replace(config, source=None),
@@ -64,15 +66,21 @@ def task_of(point: GridPoint, digest: str) -> Task:
 
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
-    rules, defaults = policy.rules, PolicyParameters(policy.name)
+    rules, defaults = policy.rules, PolicyParameters()
     if rules.all_resident:
-        return defaults
+        return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += [name for name in NUMBERS if not reads(rules, name) and name not in rules.counts]
     ignored += [] if knows_loads(rules) else ["load_info"]
     ignored += [] if rules.asks else ["merge_requests"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)
+
+
+def _decides(policy: PolicyParameters) -> dict[str, Any]:
+    """What decides what a policy does: of a file not where it lies, but what is in it."""
+    said = {field.name: getattr(policy, field.name) for field in fields(policy)}
+    return said | {"file": policy.own.get("digest"), "set": policy.numbers}
 
 
 def _holds_everything(config: Config) -> bool:

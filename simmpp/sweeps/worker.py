@@ -80,6 +80,7 @@ def _outcome(task: Task, timeout_s: float | None) -> Outcome:
         config.memory.fraction,
         settings.engine,
         settings.ready_order,
+        task.seed,
         place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
         tick=watch.look,
     )

@@ -40,16 +40,18 @@ def test_report_draws_the_figures_that_are_named(tmp_path: Path) -> None:
     assert "figures/time-profit.svg" in page
     assert "figures/message-profit.svg" not in page
     code, told = run("report", folder, "--figures", "all")
-    assert (code, "figures: 4 figures, as PNG and SVG" in told) == (0, True)
-    stems = {"time-profit", "message-profit", "accounts-by-policy", "messages-by-kind"}
+    assert (code, "figures: 6 figures, as PNG and SVG" in told) == (0, True)
+    curves = {"makespan", "time-profit", "peak-bytes", "message-profit"}
+    stems = {*curves, "accounts-by-policy", "messages-by-kind"}
     assert {path.stem for path in figures.iterdir()} == stems
-    assert len(list(figures.iterdir())) == 8
+    assert len(list(figures.iterdir())) == 12
 
 
 def test_report_refuses_unknown_figures_before_it_writes(tmp_path: Path) -> None:
     folder = written(tmp_path, [row(), row("ray")])
     code, told = run("report", folder, "--figures", "speedup", "--figures", "ray")
-    there = "all, time-profit, message-profit, accounts-by-policy, messages-by-kind"
+    curves = "makespan, time-profit, peak-bytes, message-profit"
+    there = f"all, {curves}, accounts-by-policy, messages-by-kind"
     assert told == f"simmpp: error: --figures: values 'speedup', 'ray': expected {there}\n"
     assert code == 2
     assert not (folder / "report.html").exists()

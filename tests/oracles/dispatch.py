@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from oracles.state import PE, Part
 from oracles.view import Views, numbers
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
-from simmpp.policy.hooks import knows_loads, names_in
 from simmpp.policy.policy import Hook
+from simmpp.policy.reads import knows_loads, names_in
 
 Parcel = tuple[int, list[Part]]
 """A destination, and what goes to it in one message."""

@@ -107,17 +107,18 @@ def test_the_curves_of_a_sweep_are_its_profits(swept: SweepResult) -> None:
     panels = [panel for panel in notebook._curves(swept) if isinstance(panel, Panel)]
     titles = [f"{kind} profit: {nb} PEs" for kind in ("Time", "Message") for nb in (2, 4)]
     assert [panel.title for panel in panels] == titles
-    profits = swept.profits.set_index(["processors", "policy", "fraction"]).sort_index()
-    for panel, (measure, nb) in zip(
-        panels, [(m, nb) for m in ("time_profit", "message_profit") for nb in (2, 4)], strict=True
+    rows = swept.rows.set_index(["processors", "policy", "effective_fraction", "seed"]).sort_index()
+    for panel, (column, nb) in zip(
+        panels, [(m, nb) for m in ("makespan_ps", "messages") for nb in (2, 4)], strict=True
     ):
         for curve in panel.curves:
-            name = curve.label.removesuffix(" dataflow")
-            expected = profits[measure].loc[nb, name].to_dict()
+            of_policy = rows[column].loc[nb, curve.label.removesuffix(" dataflow")]
+            ratios = np.log(rows[column].loc[nb, "object"] / of_policy)
+            expected = np.exp(ratios.groupby("effective_fraction").mean())
             shown = {x: spread.mean for x, spread in curve.points.items()}
-            assert shown == {fraction * 100: mean for fraction, mean in expected.items()}
+            assert shown == pytest.approx({x * 100: mean for x, mean in expected.items()})
         assert {curve.label for curve in panel.curves} >= {"object dataflow", "concurrent dataflow"}
-        assert "means of 2 seeds, bands are 95 % intervals" in panel.note
+        assert "geometric means of 2 seeds, bands are 95 % intervals" in panel.note
     assert len(swept.plot().axes) == 4
 
 

@@ -103,6 +103,16 @@ def workers(help_text: str) -> Callable[[Any], Any]:
     return click.option("--workers", type=Whole(1, 4096), help=help_text)
 
 
+no_code = click.option(
+    "--no-code",
+    "may_run",
+    flag_value=False,
+    default=True,
+    help="Refuse policies that are files: such a file is code, which is run.",
+)
+"""``--no-code``, which the command gets as ``may_run``."""
+
+
 def call() -> str:
     """The words by which simmpp was called, as a shell takes them."""
     return shlex.join(click.get_current_context().obj or ())

@@ -43,7 +43,7 @@ from simmpp.engine.arrays.records import (
 )
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import MESSAGE_KINDS
-from simmpp.policy.hooks import VIEW
+from simmpp.policy.record import VIEW
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
 

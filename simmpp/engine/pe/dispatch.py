@@ -47,7 +47,7 @@ from simmpp.engine.pe.misses import (
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.record.counters import note_work
-from simmpp.policy.hooks import consult
+from simmpp.policy.record import consult
 from simmpp.policy.view import View
 
 

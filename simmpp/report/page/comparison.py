@@ -12,7 +12,6 @@ from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.template import rendered
 from simmpp.run.provenance import difference
-from simmpp.sweeps.winners.points import varying_axes
 
 MOST_CHANGES = 300
 """Lines of the page's table."""
@@ -73,9 +72,6 @@ def _figures(sweeps: SideBySide) -> list[Figure]:
         )
         for measure in ("time profit", "message profit")
     }
-    rows = [*sweeps.after.profits, *sweeps.before.profits]
-    if not rows:
+    if not sweeps.after.profits and not sweeps.before.profits:
         return []
-    axes = varying_axes(rows, sweeps.after.further)
-    data = ProfitData(sweeps.after.profits, axes, sweeps.before.profits, marked)
-    return list(profit_figures(data))
+    return list(profit_figures(ProfitData(sweeps.after, sweeps.before, marked)))

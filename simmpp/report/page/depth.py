@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS, PACKED
 from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
 from simmpp.report.page.figures.figure import styles_of
+from simmpp.report.page.measures import ALL
 from simmpp.run import words
-from simmpp.sweeps.profits import MEASURES, STATISTICS
+from simmpp.sweeps.profits import MEASURES
 from simmpp.sweeps.winners.points import ACCOUNTS, KEY_AXES, KINDS, Points
 
 MOST_EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""
-GAINS = (*(m + s for m in MEASURES for s in STATISTICS), "speedup", "efficiency", "n")
+GAINS = (*MEASURES, "speedup", "efficiency")
 
 
 def depth_of(points: Points) -> dict[str, Any]:
@@ -23,7 +24,8 @@ def depth_of(points: Points) -> dict[str, Any]:
     profits = points.profits
     titles = list(styles_of(profits))
     rows = [(number, row) for number, runs in enumerate(points.runs) for row in runs]
-    packed = [name for name in PACKED if rows and name in rows[0][1]]
+    # Of the paper's experiments some pack and have further columns, others do not.
+    packed = [name for name in PACKED if any(name in row for _, row in rows)]
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
         "values": {
@@ -46,7 +48,8 @@ def depth_of(points: Points) -> dict[str, Any]:
             "place": points.groups,
             "name": [_name(points, row) for row in profits],
             "policy": [titles.index(row["policy"]) for row in profits],
-            **{name: _column(profits, name) for name in GAINS},
+            **{name: cells for gain in GAINS for name, cells in _gains(points, gain)},
+            "n": _column(profits, "n"),
         },
         "rows": {
             "point": [number for number, _ in rows],
@@ -56,6 +59,15 @@ def depth_of(points: Points) -> dict[str, Any]:
             },
         },
     }
+
+
+def _gains(points: Points, name: str) -> Iterator[tuple[str, list[Any]]]:
+    """Columns of a measure's mean and interval, the same as curves show."""
+    spreads = [ALL[name].spread(points, number) for number in range(len(points.profits))]
+    unknown = [(row[name], "", "") for row in points.profits]  # such as infinite
+    for place, end in enumerate(("", "_low", "_high")):
+        cells = [(of or rest)[place] for of, rest in zip(spreads, unknown, strict=True)]
+        yield name + end, list(map(_exact, cells))
 
 
 def _place(points: Points, number: int) -> str:
@@ -70,7 +82,7 @@ def _name(points: Points, row: Row) -> str:
 
 
 def _column(rows: Iterable[Row], name: str) -> list[Any]:
-    return [_exact(row[name]) for row in rows]
+    return [_exact(row.get(name, "")) for row in rows]
 
 
 def _exact(cell: Any) -> Any:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 
+from simmpp.plot.curves import Spread
 from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.classical import FREE, Duel, duels_of
+from simmpp.report.page.measures import ALL
 from simmpp.run import words
 from simmpp.sweeps.winners.answer import Sentence, answer
 from simmpp.sweeps.winners.contest import (
@@ -25,6 +27,8 @@ from simmpp.sweeps.winners.contest import (
     replicated_policies,
 )
 from simmpp.sweeps.winners.points import Points
+
+TIME_PROFIT = ALL["time_profit"]
 
 
 @dataclass(frozen=True)
@@ -54,36 +58,28 @@ def sentences(points: Points) -> list[Sentence]:
 def _best_gains(points: Points) -> Iterator[Sentence]:
     """Where each dataflow but the reference gains most and least."""
     no_flows = {REFERENCE, *replicated_policies(points)}
-    titles = dict.fromkeys(row["policy"] for row in points.profits)
-    finite = [n for n, row in enumerate(points.profits) if words.is_finite(row["time_profit"])]
-    for title in titles:
-        numbers = [n for n in finite if points.profits[n]["policy"] == title]
-        if numbers and title not in no_flows:
-            yield _gain(points, title, numbers)
+    found = {n: TIME_PROFIT.spread(points, n) for n in range(len(points.profits))}
+    gains = {n: gain for n, gain in found.items() if gain is not None}
+    for title in dict.fromkeys(row["policy"] for row in points.profits):
+        own = {n: gain for n, gain in gains.items() if points.profits[n]["policy"] == title}
+        if own and title not in no_flows:
+            yield _gain(points, title, own)
 
 
-def _gain(points: Points, title: str, numbers: Sequence[int]) -> Sentence:
-    def profit(number: int) -> float:
-        return float(points.profits[number]["time_profit"])
-
-    best, worst = max(numbers, key=profit), min(numbers, key=profit)
-    names = list(points.axes)
+def _gain(points: Points, title: str, gains: Mapping[int, Spread]) -> Sentence:
+    best, worst = (of(gains, key=lambda n: gains[n].mean) for of in (max, min))
+    gain, names = gains[best], list(points.axes)
+    spread = f"95 % interval {gain.low:.3g} to {gain.high:.3g}" if gain.low < gain.high else ""
     where = words.point(points.profits[best], names)
-    aside = "; ".join(filter(None, (where, _interval(points, best))))
-    text = f"{words.capital(words.policy(title))}: time profit {profit(best):.3g}"
+    aside = "; ".join(filter(None, (where, spread)))
+    text = f"{words.capital(words.policy(title))}: time profit {gain.mean:.3g}"
     text += f" ({aside})" if aside else ""
-    if len(numbers) == 1:
+    if len(gains) == 1:
         return Sentence(text + ".", (best,))
-    middle = median(map(profit, numbers))
+    middle = median(of.mean for of in gains.values())
     where = words.point(points.profits[worst], names)
-    text += f" at best, {middle:.3g} in the median, {profit(worst):.3g} at worst ({where})."
+    text += f" at best, {middle:.3g} in the median, {gains[worst].mean:.3g} at worst ({where})."
     return Sentence(text, (best, worst))
-
-
-def _interval(points: Points, number: int) -> str:
-    row = points.profits[number]
-    low, high = row["time_profit_low"], row["time_profit_high"]
-    return f"95 % interval {low:.3g} to {high:.3g}" if words.is_number(low) and low < high else ""
 
 
 def _classical(points: Points) -> Iterator[Sentence]:
@@ -141,17 +137,22 @@ def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -
             winner,
             _where(points, contests, places, along),
             len(places),
-            words.span(points.profits[contest.best]["time_profit"] for contest in won),
+            words.span(_gains(points, won)),
             _lead(points, won),
             _sure(won),
             tuple(contest.best for contest in won),
         )
 
 
+def _gains(points: Points, won: Sequence[Contest]) -> Iterator[float]:
+    for contest in won:
+        if gain := TIME_PROFIT.spread(points, contest.best):
+            yield gain.mean
+
+
 def _winner(points: Points, contest: Contest) -> str:
-    names = [contest.best, contest.second] if contest.certainty == EQUAL else [contest.best]
-    titles = [points.profits[n]["policy"] for n in names if n is not None]
-    return " = ".join(sorted(titles))
+    equal = contest.rivals if contest.certainty == EQUAL else ()
+    return " = ".join(sorted(points.profits[n]["policy"] for n in (contest.best, *equal)))
 
 
 def _where(points: Points, contests: Sequence[Contest], places: Sequence[int], along: str) -> str:

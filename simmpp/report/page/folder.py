@@ -19,7 +19,9 @@ from simmpp.studies.bench.bench import BENCH
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS
+from simmpp.sweeps.intervals import PLAIN
 from simmpp.sweeps.profits import profit_columns
+from simmpp.sweeps.stopping import CORRECTED
 
 INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS, *PACKED}, {"fraction", "effective_fraction"}
 MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS, *PACKED}
@@ -61,6 +63,13 @@ class Folder:
     def labels(self) -> dict[str, str]:
         """The policy of each label, as far as the record's configuration tells."""
         return dict(_labelled(self.record.get("config")))
+
+    @property
+    def confidence(self) -> float:
+        """Of the quantiles of its intervals: seeds that a tolerance chose need wider ones."""
+        config = self.record.get("config")
+        has_tolerance = isinstance(config, dict) and config.get("tolerance") is not None
+        return CORRECTED if has_tolerance else PLAIN
 
     @property
     def failed(self) -> list[Row]:

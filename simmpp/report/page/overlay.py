@@ -12,7 +12,7 @@ from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
 from simmpp.report.page.figures.stills import titled
 from simmpp.report.page.folder import numbers_of
 from simmpp.sweeps.profits import profit_columns
-from simmpp.sweeps.winners.points import varying_axes
+from simmpp.sweeps.winners.points import points_of_profits
 
 NOTE = "wide and pale: before"
 MOST_OVERLAID = 48
@@ -30,7 +30,8 @@ def overlay(
     rows = [*new, *old]
     common = [name for name in rows[0] if name in rows[-1]]
     further = [name for name in common if name not in profit_columns()]
-    figures = profit_figures(ProfitData(new, varying_axes(rows, further), old))
+    points = points_of_profits(new, further)
+    figures = profit_figures(ProfitData(points, points_of_profits(old, further)))
     panels = [
         titled(replace(panel, note=NOTE), figure, plate)
         for figure in figures

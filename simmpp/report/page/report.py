@@ -48,7 +48,9 @@ class Report:
 
 def report_of(folder: Folder) -> Report:
     """Work out what the rows of a folder show."""
-    points = points_of(folder.rows, folder.further, folder.profits, folder.labels)
+    points = points_of(
+        folder.rows, folder.further, folder.profits, folder.labels, folder.confidence
+    )
     has_runs = any(points.runs)
     figures = {
         group: list(group.figures(folder, points))

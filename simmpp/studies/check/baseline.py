@@ -18,6 +18,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, read_csv
 from simmpp.config.config import Config, config_from_mapping, described, with_key
 from simmpp.config.defaults import READING
+from simmpp.config.own_policies import FILE
 from simmpp.config.reading import reading_names
 from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
@@ -100,11 +101,17 @@ def _other_settings(recorded: dict[str, Any], config: Config) -> str:
     here = described(config)
     known = {"scene": here["scene"], READING: reading}
     if policies := recorded.get("policy"):
-        keys = ("name", "label")
-        known["policy"] = [{key: p[key] for key in keys if key in p} for p in policies]
+        known["policy"] = [_named(policy) for policy in policies]
     defaults = config_from_mapping(known, folder=config.kept_source.folder)
     before = _merged(described(defaults), recorded)
     return difference(before, _merged(here, here), "in the baseline")
+
+
+def _named(policy: Mapping[str, Any]) -> dict[str, Any]:
+    """A policy by its name; one of one's own, whose file isn't here, by its label alone."""
+    if FILE in policy:
+        return {"label": policy.get("label", policy["name"])}
+    return {key: policy[key] for key in ("name", "label") if key in policy}
 
 
 def default_changed(recorded: Mapping[str, Any], config: Config) -> bool:
@@ -121,7 +128,9 @@ def _merged(defaults: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, 
         if isinstance(given.get(key), dict):
             merged[key] = {**defaults[key], **given[key]}
     policies = zip(defaults["policy"], merged["policy"], strict=True)
-    merged["policy"] = [{**by_default, **policy} for by_default, policy in policies]
+    merged["policy"] = [
+        policy if FILE in policy else {**by_default, **policy} for by_default, policy in policies
+    ]
     return merged
 
 

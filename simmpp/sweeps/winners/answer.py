@@ -97,10 +97,13 @@ def _spread(contest: Contest) -> str:
 def _absent(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
     """Dataflows that take part in some of the cases only."""
     counts = Counter(number for contest in contests for number in contest.flows)
-    for flow in sorted(counts):
-        if counts[flow] < len(contests):
-            missing = f"{len(contests) - counts[flow]} of {len(contests)} cases"
-            yield Sentence(f"{words.capital(flow)} has no result in {missing}.")
+    missing = [
+        f"{flow} has no result in {len(contests) - number}"
+        for flow, number in sorted(counts.items())
+        if number < len(contests)
+    ]
+    if missing:
+        yield Sentence(f"{words.capital(', '.join(missing))} of {len(contests)} cases.")
 
 
 def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:

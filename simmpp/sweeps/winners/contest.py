@@ -17,7 +17,7 @@ from statistics import fmean
 from simmpp.policy.parameters import CEILING
 from simmpp.run.profit import ratio
 from simmpp.run.rows import pairs
-from simmpp.sweeps.intervals import Spread, of_logarithms
+from simmpp.sweeps.intervals import MeanInterval, of_logarithms
 from simmpp.sweeps.winners.points import Points
 
 SURE, UNSURE, EQUAL, ALONE, TOO_FEW_SEEDS = "sure", "unsure", "equal", "alone", "too few seeds"
@@ -79,7 +79,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
     ratios = {n: makespan_ratios(points, n, best) for n in others}
     verdicts = {n: _verdict(of) for n, of in ratios.items()}
     second = others[0] if others else None
-    lead = of_logarithms(ratios[second]) if second is not None else Spread.unknown()
+    lead = of_logarithms(ratios[second]) if second is not None else MeanInterval.unknown()
     top = makespan_ratios(points, best, ceilings[0]) if ceilings else []
     return Contest(
         best,

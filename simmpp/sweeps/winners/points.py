@@ -15,7 +15,8 @@ from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CLASSICAL, REFERENCE
 from simmpp.run import words
 from simmpp.run.rows import Seeds, by_place, finished, pairs
-from simmpp.sweeps.profits import profit_rows, profits_in_order
+from simmpp.sweeps.intervals import PLAIN
+from simmpp.sweeps.profits import MEASURES, profit_rows, profits_in_order
 
 KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 ACCOUNTS = {account: f"{account}_ps" for account in ("compute", "communication", "waiting")}
@@ -40,11 +41,19 @@ class Points:
     further: tuple[str, ...]
     labels: Mapping[str, str] = field(default_factory=dict)
     """Policies by label, as far as known."""
+    confidence: float = PLAIN
+    """Of the quantiles of intervals, which are of 95 % however seeds were chosen."""
 
     def name(self, number: int) -> str:
         """The policy of a point, where its label is another one's or known; else its label."""
         title = str(self.profits[number]["policy"])
         return self.labels.get(title, title)
+
+    def references(self, number: int) -> Seeds:
+        """The rows of object dataflow at the place of a point."""
+        place = self.places[self.groups[number]]
+        found = (n for n in place if self.profits[n]["policy"] == REFERENCE)
+        return next((self.seeds[n] for n in found), {})
 
     def flow(self, number: int) -> str:
         """The policy of a point as the paper calls it."""
@@ -91,6 +100,11 @@ class Points:
             found.setdefault(keys, place)
         return list(found.values())
 
+    @cached_property
+    def repeated(self) -> frozenset[int]:
+        """Points of places that are the simulations of an earlier one."""
+        return frozenset(range(len(self.profits))) - frozenset(chain(*self.cases))
+
     def held(self, number: int) -> Any:
         """Where a point lies along x: the share of the objects that PEs of its place really hold.
 
@@ -134,11 +148,9 @@ class Points:
         return min((cell for cell in cells if cell != ""), default="")
 
     def _simulations(self, place: list[int]) -> tuple[object, ...]:
-        return tuple(
-            (self.profits[n]["policy"], r["seed"], r["makespan_ps"], r["messages"])
-            for n in place
-            for r in self.runs[n]
-        )
+        profits = [[self.profits[n][key] for key in ("policy", *MEASURES)] for n in place]
+        rows = (r for n in place for r in self.runs[n])
+        return str(profits), *((r["seed"], r["makespan_ps"], r["messages"]) for r in rows)
 
     def shares(self, number: int) -> dict[str, float]:
         """Shares of all PEs' time over all seeds, by account; none where a row does not know."""
@@ -174,6 +186,7 @@ def points_of(
     further: tuple[str, ...],
     known: Sequence[Row] = (),
     labels: Mapping[str, str] = NO_LABELS,
+    confidence: float = PLAIN,
 ) -> Points:
     """Put the rows of each point together; ``labels`` name the policy of each label.
 
@@ -194,13 +207,20 @@ def points_of(
         else:
             rest += (row for seeds in policies.values() for row in seeds.values())
     profits = profits_in_order([*written, *profit_rows(rest, further)], further)
+    seeds = [finished(places[tuple(row[n] for n in names)][row["policy"]]) for row in profits]
+    return Points(profits, seeds, _groups(profits, names), further, labels, confidence)
+
+
+def points_of_profits(profits: Sequence[Row], further: Sequence[str]) -> Points:
+    """Points of which nothing is known but their profits."""
+    groups = _groups(profits, (*PLACE, *further))
+    return Points(profits, [{} for _ in profits], groups, tuple(further))
+
+
+def _groups(profits: Sequence[Row], names: Sequence[str]) -> list[int]:
+    """The number of each point's place."""
     numbers: dict[tuple[object, ...], int] = {}
-    groups, seeds = [], []
-    for profit in profits:
-        place = tuple(profit[name] for name in names)
-        groups.append(numbers.setdefault(place, len(numbers)))
-        seeds.append(finished(places[place][profit["policy"]]))
-    return Points(profits, seeds, groups, further, labels)
+    return [numbers.setdefault(tuple(row[n] for n in names), len(numbers)) for row in profits]
 
 
 def _counts(policies: Mapping[str, Seeds]) -> dict[str, int]:

@@ -107,10 +107,11 @@
       if (number !== undefined) document.dispatchEvent(new CustomEvent("chosen", { detail: number }));
     });
   };
-  // The rest follows while there is nothing else to do.
+  // The rest follows while there is nothing else to do; what is folded, when it is opened.
+  const isFolded = (element) => element.closest("details:not([open])");
   const idle = window.requestIdleCallback ?? ((task) => setTimeout(task, 50));
   const beginRest = () => {
-    const next = [...charts.keys()].find((element) => !element.on);
+    const next = [...charts.keys()].find((element) => !element.on && !isFolded(element));
     if (next) { begin(next); idle(beginRest); }
   };
   addEventListener("load", () => idle(beginRest));
@@ -159,10 +160,11 @@
   document.addEventListener("themed", redraw);
   let before = null;
   addEventListener("beforeprint", () => {
-    charts.forEach((_, element) => { if (!element.on) begin(element); });
+    charts.forEach((_, element) => { if (!element.on && !isFolded(element)) begin(element); });
     before = document.documentElement.dataset.theme;
     setTheme("light");
     charts.forEach((_, element) => {
+      if (!element.on) return;
       const [width, height] = element.closest(".one") ? [620, 300] : [330, 230];  // of A4 or letter paper
       const smaller = { "font.size": 10, "xaxis.title.font.size": 10, "yaxis.title.font.size": 10 };
       Plotly.relayout(element, { width, height, autosize: false, ...smaller });
@@ -170,7 +172,7 @@
   });
   addEventListener("afterprint", () => {
     setTheme(before);  // draws all again, without what was for paper
-    charts.forEach((_, element) => Plotly.Plots.resize(element));
+    charts.forEach((_, element) => { if (element.on) Plotly.Plots.resize(element); });
   });
   window.simmpp = { data, made, show, legend };
 })();

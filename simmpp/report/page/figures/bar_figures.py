@@ -52,7 +52,11 @@ def _figure(
     bars_of: dict[str, list[Bars]] = {}
     for plate, panels in plates(points.profits, arrangement).items():
         drawn = {
-            panel: {n: heights for n, _ in numbered if (heights := heights_of(n))}
+            panel: {
+                n: heights
+                for n, _ in numbered
+                if n not in points.repeated and (heights := heights_of(n))
+            }
             for panel, numbered in panels.items()
         }
         sums = [sum(heights.values()) for bars in drawn.values() for heights in bars.values()]
@@ -60,7 +64,7 @@ def _figure(
         bars_of[plate] = []
         for panel in sorted(panels, key=lambda panel: styles.get(panel, 0)):
             numbers = list(drawn[panel])
-            names = tuple(scales.label(along, points.profits[n][along]) for n in numbers)
+            names = tuple(scales.label(along, points.at(n, along)) for n in numbers)
             parts = _parts(list(drawn[panel].values()))
             bars_of[plate].append(Bars(panel, Scale(x.label, names=names), y, parts, numbers))
     return Figure(stem, title, note, bars_of)

@@ -23,6 +23,8 @@ class Figure:
     note: str
     plates: Mapping[str, Sequence[Panel | Bars]]
     """By what they are of; the empty text if there is only one."""
+    is_folded: bool = False
+    """Shown when it is asked for."""
 
     @property
     def first(self) -> int:

@@ -31,8 +31,8 @@ class FigureGroup:
 FIGURE_GROUPS = (
     FigureGroup("paper", "The paper's figures", CLICKING, paper.STEMS, paper.paper_figures),
     FigureGroup(
-        *("profits", "Profits", CLICKING, profit_figures.STEMS),
-        lambda _, points: profit_figures.profit_figures(ProfitData(points.profits, points.axes)),
+        *("curves", "Curves", CLICKING, profit_figures.STEMS),
+        lambda _, points: profit_figures.profit_figures(ProfitData(points)),
     ),
     FigureGroup(
         *("accounts", "Time and messages", "", bar_figures.STEMS),

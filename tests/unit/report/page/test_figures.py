@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from sweep_rows import failed, row, sweep
 
 from simmpp.common.files import Row
-from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.curves import Bars, Curve, Panel
 from simmpp.plot.plotly_panels import drawn
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.figures.bar_figures import bar_figures
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
-from simmpp.sweeps.profits import MEASURES
+from simmpp.report.page.measures import ALL
 from simmpp.sweeps.winners.points import ACCOUNTS, KINDS, Points, points_of
 
 NAMES = st.sampled_from(["plain", "<script>alert(1)</script>", 'a "b" & c', "%{y}", "é", "$x$"])
@@ -60,28 +60,34 @@ def panels(figures: list[Figure]) -> list[Any]:
 
 
 def figures_of(points: Points) -> list[Figure]:
-    return [*profit_figures(ProfitData(points.profits, points.axes)), *bar_figures(points)]
+    return [*profit_figures(ProfitData(points)), *bar_figures(points)]
 
 
 @few
 @given(rows=sweeps())
-def test_curves_show_each_profit_of_any_sweep_once(rows: list[Row]) -> None:
+def test_curves_show_each_point_of_any_sweep_once(rows: list[Row]) -> None:
+    """But points that hold the same objects wherever x was asked to be: these are one."""
     points = points_of(rows, FURTHER)
-    found = list(profit_figures(ProfitData(points.profits, points.axes)))
-    for figure in found:
-        measure = next(
-            m
-            for m in (*MEASURES, "speedup", "efficiency")
-            if figure.stem.startswith(m.replace("_", "-"))
-        )
-        shown = [
-            (curve.rows[x], spread.mean)
-            for panel in panels([figure])
-            for curve in panel.curves
-            for x, spread in curve.points.items()
-        ]
-        expected = [(n, row[measure]) for n, row in enumerate(points.profits) if row[measure] != ""]
-        assert sorted(shown) == expected
+    for figure in profit_figures(ProfitData(points)):
+        name = next(name for name in ALL if figure.stem.startswith(name.replace("_", "-")))
+        expected = {n for n in range(len(points.profits)) if ALL[name].spread(points, n)}
+        shown = [number for curve in curves_of(figure) for number in curve.rows.values()]
+        assert len(set(shown)) == len(shown)
+        merged = expected - set(shown)
+        assert set(shown) <= expected
+        for number in merged:
+            assert any(is_one(points, number, other) for other in shown)
+
+
+def curves_of(figure: Figure) -> list[Curve]:
+    return [curve for panel in panels([figure]) for curve in panel.curves]
+
+
+def is_one(points: Points, one: int, other: int) -> bool:
+    """Points of one policy that differ in what was asked for, but not in what is held."""
+    keys = [key for key in points.profits[0] if key not in ("fraction",)]
+    same = all(points.profits[one][key] == points.profits[other][key] for key in keys)
+    return same and points.held(one) == points.held(other)
 
 
 @few
@@ -102,7 +108,7 @@ def test_bars_are_the_accounts_and_messages_of_the_rows(rows: list[Row]) -> None
                 assert panel.parts[name][bar] == fmean(r[column] for r in points.runs[number])
     for figure in (accounts, messages):
         shown = sorted(number for panel in panels([figure]) for number in panel.rows)
-        assert shown == [n for n, runs in enumerate(points.runs) if runs]
+        assert shown == [n for n, r in enumerate(points.runs) if r and n not in points.repeated]
 
 
 @few
@@ -185,25 +191,36 @@ def test_bars_of_policies_come_in_the_order_of_their_colours() -> None:
     ]
 
 
+def test_bars_of_the_same_simulations_are_one() -> None:
+    cells = {"processors": 4, "effective_fraction": 0.25}
+    rows = [
+        row(p, fraction=x, makespan_ps=5, **cells) for p in ("object", "ray") for x in (0.05, 0.1)
+    ]
+    points = points_of([*rows, *sweep(("object", "ray"), 1, processors=[4], fraction=[0.5])], ())
+    for figure in bar_figures(points):
+        for panel in panels([figure]):
+            assert panel.x.names == ("25", "50")
+
+
 def test_plotly_reads_html_so_labels_are_escaped() -> None:
     hostile = "<b>\"eager\"</b> & 'lazy'"
     points = points_of(
         with_further([row(p, fraction=x) for p in ("object", hostile) for x in (0.1, 1.0)]), FURTHER
     )
-    (panel,) = next(profit_figures(ProfitData(points.profits, points.axes))).plates[""]
+    (panel,) = next(profit_figures(ProfitData(points))).plates[""]
     assert [trace["name"] for trace in drawn(panel)["data"]] == [
         "object dataflow",
         html.escape(hostile),
     ]
     named = with_further([row(point=hostile), row(point="plain")])
     points = points_of(named, FURTHER)
-    (panel,) = next(profit_figures(ProfitData(points.profits, points.axes))).plates[""]
+    (panel,) = next(profit_figures(ProfitData(points))).plates[""]
     assert html.escape(hostile) in drawn(panel)["layout"]["xaxis"]["ticktext"]
 
 
 def test_values_that_look_alike_have_panels_of_their_own() -> None:
     rows = with_further([row(processors=n, fraction=x) for n in (1, 2, 3) for x in (0.1, 0.10001)])
     points = points_of(rows, FURTHER)
-    figure = next(profit_figures(ProfitData(points.profits, points.axes)))
+    figure = next(profit_figures(ProfitData(points)))
     (plate,) = figure.plates.values()
     assert [panel.title for panel in plate] == ["x = 10 %", "x = 10 % (2)"]

@@ -151,6 +151,12 @@ def test_only_a_page_of_a_running_sweep_reloads_itself(tmp_path: Path) -> None:
     assert not any("location.reload" in text for text in done.scripts if text not in script())
 
 
+def test_rows_of_experiments_that_pack_lie_beside_rows_of_others() -> None:
+    rows = [row(processors=2), row(processors=4) | {"request_parts": 5}]
+    depth = depth_of(points_of(rows, ()))
+    assert depth["rows"]["request_parts"] == ["", 5]
+
+
 def test_figures_of_the_paper_are_there_where_the_rows_are_those_of_its_experiments() -> None:
     reproduced = read_folder(NEBEL98)
     figures = paper_figures(reproduced, points_of(reproduced.rows, ()))

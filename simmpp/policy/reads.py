@@ -1,0 +1,73 @@
+"""What hooks read: fields of the view, and what stands around them in their files.
+
+Compiled code has no way to a field but its name, so the names in a function and in all that it
+calls are at least those that it reads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from types import CodeType, FunctionType, ModuleType
+
+from simmpp.policy.policy import Hook, Policy
+from simmpp.policy.view import GROUPS, LOADS
+
+
+def groups_read(hook: Hook | None) -> int:
+    """The groups of the view's fields that a hook reads, as one number."""
+    read = names_in(hook)
+    return sum(group for group, names in GROUPS.items() if not read.isdisjoint(names))
+
+
+def reads(policy: Policy, *names: str) -> bool:
+    """Does any hook of the policy read one of these fields?"""
+    return any(not names_in(hook).isdisjoint(names) for hook in (policy.send, policy.ask))
+
+
+def knows_loads(policy: Policy) -> bool:
+    """Does it read loads of others? Without, headers are not remembered."""
+    return reads(policy, *GROUPS[LOADS])
+
+
+@cache
+def names_in(hook: Hook | None) -> frozenset[str]:
+    """All names in a hook and in what it calls."""
+    names: set[str] = set()
+    for function in functions_of(hook):
+        for code in _codes(function.__code__):
+            names.update(code.co_names)
+    return frozenset(names)
+
+
+def functions_of(hook: object) -> list[FunctionType]:
+    """A hook and the functions of Python that it calls, directly or not."""
+    found: dict[FunctionType, None] = {}
+    pending = [hook]
+    while pending:
+        function = getattr(called := pending.pop(), "py_func", called)
+        if isinstance(function, FunctionType) and function not in found:
+            found[function] = None
+            pending += [value for _, value in globals_of(function)]
+    return list(found)
+
+
+def globals_of(function: FunctionType) -> Iterator[tuple[str, object]]:
+    """What a function reads of its surroundings, by name: of modules, what it may read of them."""
+    for code in _codes(function.__code__):
+        cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
+        for name in (*code.co_names, *cells):
+            value = cells[name].cell_contents if name in cells else function.__globals__.get(name)
+            if isinstance(value, ModuleType):
+                members = ((name, getattr(value, name, None)) for name in code.co_names)
+                yield from ((name, member) for name, member in members if member is not None)
+            elif value is not None:
+                yield name, value
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """A function's code and that of the functions in it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
