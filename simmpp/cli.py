@@ -21,6 +21,7 @@ COMMANDS = {
     "model": "Say which dataflow the paper's analytical model expects to win.",
     "bench": "Measure the run time of each method against its error.",
     "reproduce": "Repeat the experiments of Nebel 1998 and judge its claims.",
+    "policy": "Write a policy of your own, and check it.",
     "scene": "List the objects and materials of a scene.",
     "workload": "List the rays of a picture, and which objects they need.",
     "machine": "Print every constant of a machine with its source.",
@@ -61,6 +62,10 @@ class Commands(click.Group):
         """Import the command; None if there is none so called."""
         if cmd_name not in COMMANDS:
             return None
+        if ctx.resilient_parsing:  # a shell completes words
+            from simmpp.commands.parts.completion import command as with_words
+
+            return with_words(cmd_name, COMMANDS[cmd_name])
         module = import_module(f"simmpp.commands.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
@@ -125,3 +130,7 @@ def main() -> None:
     Simulates a parallel machine that traces the real rays of a scene that does not fit into the
     memory of one of its processing elements (PEs).
     """
+
+
+if "_SIMMPP_COMPLETE" in os.environ:  # set by the shell when words are to be completed
+    import_module("simmpp.commands.parts.completion")

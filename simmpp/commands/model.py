@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.parts import options
+from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.tables import table
 from simmpp.commands.parts.terminal import notice, say, wrote
 from simmpp.commands.parts.tracing import workload as workload_of
@@ -37,7 +37,12 @@ from simmpp.workload.workload import Workload
     ),
 )
 @options.config_argument
-@options.setting("Set a dotted key; method=analytical-measured feeds the model with measured r.")
+@short_cuts.settings(
+    "Set a dotted key; method=analytical-measured feeds the model with measured r.",
+    short_cuts.PROCESSORS,
+    short_cuts.FRACTION,
+    is_swept=True,
+)
 @click.option(
     "--ratio",
     "ratio_texts",

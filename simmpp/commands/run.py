@@ -11,7 +11,7 @@ import click
 import numpy as np
 from rich.progress import TaskID
 
-from simmpp.commands.parts import options
+from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
@@ -38,13 +38,19 @@ from simmpp.workload.trace.verify import verify
     "run",
     epilog=options.examples(
         "simmpp run configs/quick.yaml --picture quick.png",
-        "simmpp run configs/quick.yaml --set memory.fraction=5% --figures figures",
+        "simmpp run configs/quick.yaml --policy ray,concurrent --fraction 5% --figures figures",
         "simmpp run configs/quick.yaml --timeline cut.json --timeline-window '0 ms:5 ms'",
     ),
 )
 @options.config_argument
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.setting("Set a dotted key of the configuration, such as memory.fraction=0.2; repeatable.")
+@short_cuts.settings(
+    "Set any other dotted key, such as machine.preset=t3d; repeatable.",
+    short_cuts.POLICY,
+    short_cuts.PROCESSORS,
+    short_cuts.FRACTION,
+    short_cuts.SEED,
+)
 @options.path("--out", "Folder for run.json and results.csv.")
 @options.path("--picture", "Write the picture as PNG.")
 @options.path(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from simmpp.commands.parts import options
+from simmpp.commands.parts import options, short_cuts
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import start_server
 
@@ -16,15 +16,21 @@ from simmpp.sweeps.executors import start_server
     "sweep",
     epilog=options.examples(
         "simmpp sweep configs/sweep.yaml",
-        "simmpp sweep configs/sweep.yaml --set seeds='[0, 1, 2, 3]' --out results/more",
+        "simmpp sweep configs/sweep.yaml --seeds 4 --processors 8,64 --out results/more",
     ),
 )
 @options.config_argument
 @options.workers("Processes on this machine; 1 works in this one.  [default: one for each core]")
 @click.option("--cluster", metavar="ADDRESS", help="A Dask scheduler, such as tcp://host:8786.")
 @options.engine("The event loop.  [default: the key engine, or else compiled]")
-@options.setting(
-    "Set a dotted key, such as memory.fraction=0.2 or sweep.processors='[8, 64]'; repeatable."
+@short_cuts.settings(
+    "Set any other dotted key, such as tolerance=2% or sweep.ready_order='[depth-first, "
+    "breadth-first]'; repeatable.",
+    short_cuts.POLICY,
+    short_cuts.PROCESSORS,
+    short_cuts.FRACTION,
+    short_cuts.SEEDS,
+    is_swept=True,
 )
 @click.option(
     "--timeout",

@@ -22,8 +22,8 @@ import numba
 from filelock import FileLock
 from numba.core.caching import FunctionCache
 from numba.core.registry import CPUDispatcher
-from platformdirs import user_cache_path
 
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import CacheWarning
 from simmpp.common.interrupts import Uninterrupted
 
@@ -161,14 +161,6 @@ def _is_writable(folder: Path) -> bool:
     except OSError:
         return False
     return os.access(folder, os.W_OK)
-
-
-def cache_folder() -> Path:
-    """Where workloads and compiled code are kept: SIMMPP_CACHE, XDG_CACHE_HOME or the user's."""
-    chosen, xdg = os.environ.get("SIMMPP_CACHE"), os.environ.get("XDG_CACHE_HOME")
-    if chosen:
-        return Path(chosen)
-    return Path(xdg) / "simmpp" if xdg else user_cache_path("simmpp", appauthor=False)
 
 
 def source_digest(*modules: str) -> str:

@@ -11,7 +11,7 @@ from simmpp.common.units import shown
 KeyPath = tuple[str | int, ...]
 """Keys and indices from the top of a document."""
 Place = tuple[str, int | None]
-"""Where a key was set: a file or ``--set KEY``, and the line."""
+"""Where a key was set: a file, ``--set KEY`` or an option named as the key ends; and the line."""
 
 
 def misplaced(
@@ -24,7 +24,9 @@ def misplaced(
     path = _as_written(path, places)
     where, line = places.get(path, ("", None))
     key = dotted(path[:-1] if within else path)
-    prefix = "" if not key or where == f"--set {key}" else f"{key}: "
+    last = key.rpartition(".")[2]
+    is_named = where == f"--set {key}" or (where[:2] == "--" and last.startswith(where[2:]))
+    prefix = "" if not key or is_named else f"{key}: "
     return ConfigError(prefix + problem, where=where, line=line)
 
 

@@ -22,6 +22,11 @@ SAME = {"memory.fraction": "memory.bytes", "memory.bytes": "memory.fraction"}
 """Keys that say the same in another way: setting one takes the other back."""
 
 
+def meet(one: str, other: str) -> bool:
+    """Whether two keys are the same, or one is within the other: a value may be a mapping."""
+    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
+
+
 @dataclass(frozen=True)
 class Choice:
     """One value of an axis."""

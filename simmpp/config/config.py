@@ -17,7 +17,7 @@ from simmpp.common.units import shown
 from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
 from simmpp.config.defaults import READING, filled, lines_used
-from simmpp.config.overrides import Places, override, set_key
+from simmpp.config.overrides import Override, Places, override, refuse_both, set_key
 from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
@@ -110,8 +110,10 @@ class Config:
         return self.settings.memory
 
 
-def load_config(path: str | Path, overrides: Sequence[str] = (), *, may_run: bool = True) -> Config:
-    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them.
+def load_config(
+    path: str | Path, overrides: Sequence[Override] = (), *, may_run: bool = True
+) -> Config:
+    """Read a configuration; ``overrides`` are ``KEY=VALUE`` as ``--set`` takes them, or options.
 
     The files of policies that it names are run, if they may.
 
@@ -132,7 +134,7 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), *, may_run: boo
 
 
 def config_from_mapping(
-    mapping: Mapping[str, object], overrides: Sequence[str] = (), folder: Path = Path()
+    mapping: Mapping[str, object], overrides: Sequence[Override] = (), folder: Path = Path()
 ) -> Config:
     """Check a configuration given as Python data with the keys of the YAML file.
 
@@ -155,8 +157,9 @@ def with_key(config: Config, key: str, value: object) -> Config:
     return _checked(Source(data, places, source.folder, source.may_run))
 
 
-def _checked(source: Source, overrides: Sequence[str] = ()) -> Config:
+def _checked(source: Source, overrides: Sequence[Override] = ()) -> Config:
     """The configuration, once it and all values that are swept are found right."""
+    refuse_both(overrides)
     for assignment in overrides:
         override(source.data, assignment, source.places)
     config = _structured(source)

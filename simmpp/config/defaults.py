@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from simmpp.config.axes import SAME
+from simmpp.config.axes import SAME, meet
 from simmpp.config.reading import MACHINE, POLICY, Line, Reading
 from simmpp.config.settings import Settings, long_policies
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, REFERENCE
@@ -31,12 +31,7 @@ def lines_used(data: Mapping[str, Any], settings: Settings, reading: Reading) ->
         own = machine.flat()
         left = (costs.written(key) for key in costs.constants.flat() if key not in own)
         used |= dict.fromkeys(f"{MACHINE}.{machine.preset}.{key}" for key in left)
-    return [line for line in reading.lines if any(_meet(line.key, key) for key in used)]
-
-
-def _meet(one: str, other: str) -> bool:
-    """Whether two keys are the same, or one is within the other: a value may be a mapping."""
-    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
+    return [line for line in reading.lines if any(meet(line.key, key) for key in used)]
 
 
 def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], dict[str, None]]:

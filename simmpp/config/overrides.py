@@ -1,16 +1,18 @@
-"""Setting single keys of a configuration's data: ``--set`` and the values of a sweep."""
+"""Setting single keys of a configuration's data: ``--set``, its short cuts, values of a sweep."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place, unknown
 from simmpp.common.strict import fields_of, inner_class
+from simmpp.common.units import shown
 from simmpp.common.yamlfile import parse_yaml
-from simmpp.config.axes import SAME
+from simmpp.config.axes import SAME, meet
 from simmpp.config.settings import Settings, long_policies
+from simmpp.config.short_cut import ShortCut
 from simmpp.machine.constants import long_test
 from simmpp.policy.parameters import DEFAULT_POLICY
 from simmpp.scene.view import long_camera
@@ -27,8 +29,31 @@ _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
 }
 
 
-def override(data: dict[str, Any], assignment: str, places: Places) -> None:
-    """Apply one ``--set KEY=VALUE``; the value is read as YAML."""
+Override = str | ShortCut
+"""``KEY=VALUE`` as ``--set`` takes it, or another option."""
+POLICY, SEEDS = "policy", "seeds"
+"""Keys that take lists themselves."""
+MOST_COUNTED = 100_000
+"""Seeds at most by their number: as many as ``max_seeds`` allows."""
+
+
+def refuse_both(overrides: Iterable[Override]) -> None:
+    """Raise ConfigError if ``--set`` has the key of a short cut, too."""
+    overrides = list(overrides)
+    for cut in (cut for cut in overrides if isinstance(cut, ShortCut)):
+        for text in (text for text in overrides if isinstance(text, str)):
+            key = " ".join(text.partition("=")[0].split())
+            names = [name.strip() for name in key.removeprefix("sweep.").split(",")]
+            if any(meet(cut.key, name) or SAME.get(cut.key) == name for name in names):
+                raise ConfigError(f"expected {cut.option} or --set {key}, got both")
+
+
+def override(data: dict[str, Any], assignment: Override, places: Places) -> None:
+    """Apply one ``--set KEY=VALUE``, whose value is read as YAML, or a short cut of it."""
+    if isinstance(assignment, ShortCut):
+        key, value = _meant(assignment, data.get("sweep"))
+        set_key(data, key, value, places, (assignment.option, None))
+        return
     key, equals, text = assignment.partition("=")
     where = "--set " + " ".join(key.split())
     if not equals or not key:
@@ -38,6 +63,41 @@ def override(data: dict[str, Any], assignment: str, places: Places) -> None:
     except ConfigError as error:
         raise ConfigError(error.problem, where=where) from None
     set_key(data, key, value, places, (where, None))
+
+
+def _meant(cut: ShortCut, axes: object) -> tuple[str, object]:
+    """The key and the value that a short cut sets, beside the axes that a sweep has."""
+    values = [value for text in cut.texts for value in _listed(cut.option, text)]
+    is_axis = isinstance(axes, dict) and cut.key in axes
+    if cut.key == POLICY and not (cut.is_swept and is_axis):
+        return cut.key, values
+    if cut.key == SEEDS and cut.is_swept:
+        return cut.key, values if len(values) > 1 else _counted(values[0], cut.option)
+    if cut.is_swept:
+        return f"sweep.{cut.key}", values
+    if len(values) > 1:
+        problem = "expected one, as one point is simulated; `simmpp sweep` takes several"
+        raise ConfigError(f"value {shown(', '.join(cut.texts))}: {problem}", where=cut.option)
+    return cut.key, values if cut.key == SEEDS else values[0]
+
+
+def _counted(number: object, option: str) -> list[int]:
+    """So many seeds, from 0."""
+    if type(number) is not int or not 0 < number <= MOST_COUNTED:
+        expected = f"expected how many, 1 to {MOST_COUNTED}, or which, such as 0,5"
+        raise ConfigError(f"value {shown(number)}: {expected}", where=option)
+    return list(range(number))
+
+
+def _listed(option: str, text: str) -> list[object]:
+    """The values of a list as users type it, without its brackets."""
+    try:
+        values = parse_yaml(f"[{text}]").data
+    except ConfigError as error:
+        raise ConfigError(error.problem, where=option) from None
+    if not isinstance(values, list) or not values:
+        raise ConfigError(f"value {shown(text)}: expected at least one value", where=option)
+    return values
 
 
 def set_key(data: dict[str, Any], key: str, value: object, places: Places, place: Place) -> None:

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import refuse_special, write_text
 from simmpp.common.units import shown

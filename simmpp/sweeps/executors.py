@@ -185,7 +185,7 @@ def _leashed(workers: int, preload: str = PRELOAD) -> Leashed:
 
 
 def _begin_processes(workers: int, begun: Future[Leashed]) -> None:
-    from simmpp.common.compiled import cache_folder
+    from simmpp.common.cache import cache_folder
 
     try:
         context: Any = multiprocessing.get_context(START_METHOD)

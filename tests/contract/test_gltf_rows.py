@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from gltf_files import File
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.sweeps.journal import FILE
 
 PROCESSES = int(os.environ.get("SIMMPP_TEST_CASES", "2"))

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 
 CONFIG = """\
 scene: {spd: rings, size: 1}

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from simmpp.cli import main
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import ConfigError, ModelError
 from simmpp.config.config import config_from_mapping, with_key
 from simmpp.engine.simulate import simulate

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.sweep import Watcher, run_sweep

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mesh_files import SQUARE, U, obj
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import Pool, SerialExecutor
 from simmpp.sweeps.journal import FILE

@@ -18,7 +18,7 @@ import pytest
 from click.testing import CliRunner
 
 from simmpp.cli import main
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.config.config import load_config
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.report import report_of, write_page

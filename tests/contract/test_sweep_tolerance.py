@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from simmpp.cli import main
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import simulate
 from simmpp.methods import simulation as simulating

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from fuzzing import TRIED
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 
 COMPILED = os.environ.get("NUMBA_CACHE_DIR") or str(cache_folder() / "compiled")
 """Compiled code is shared with the other tests."""

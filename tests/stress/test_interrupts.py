@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 
 INTERRUPTS = int(os.environ.get("SIMMPP_INTERRUPTS", "1"))
 SEED = int(os.environ.get("SIMMPP_INTERRUPTS_SEED", "0"))

@@ -91,7 +91,8 @@ def announce_compilation(*, simulating: bool = True) -> None:
     until the command ends.
     """
     from simmpp.commands.parts.options import available_cores
-    from simmpp.common.compiled import cache_folder, is_compiled, keeps_code
+    from simmpp.common.cache import cache_folder
+    from simmpp.common.compiled import is_compiled, keeps_code
     from simmpp.common.modules import CANDIDATES, ENGINE
     from simmpp.sweeps.compile_engine import engine_compiled_beside
 

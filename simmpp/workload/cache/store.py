@@ -21,7 +21,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import cache_folder
+from simmpp.common.cache import cache_folder
 from simmpp.common.errors import CacheWarning, WorkloadError
 from simmpp.common.files import replaced
 from simmpp.scene.check import check_scene
