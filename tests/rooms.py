@@ -206,7 +206,10 @@ def yard(folder: Path) -> Room:
         "processors: 16\n"
     )
     put = affine(turn("xyz", CART_TURN) @ np.diag(CART_SCALE), CART_MOVE)  # type: ignore[arg-type]
-    bodies = [body(f"0.yard/{name}_of_{name}", *rest) for name, *rest in YARD]
+    bodies = [
+        body(f"0.yard/{name}_of_{name}", shape, matrix, finish, colour)
+        for name, shape, matrix, finish, colour in YARD
+    ]
     bodies += [
         body(f"1.cart/{name}_of_{name}", shape, put @ matrix, finish, colour)
         for name, shape, matrix, finish, colour in CART
