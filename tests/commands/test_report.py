@@ -66,6 +66,20 @@ def test_drawing_has_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert "drawing 1 of 1" in screen.getvalue()
 
 
+def test_reading_and_writing_have_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = StringIO()
+
+    def bars() -> Progress:
+        return Progress(
+            TextColumn("{task.description}"), console=Console(file=screen, force_terminal=True)
+        )
+
+    monkeypatch.setattr("simmpp.commands.parts.terminal.progress_bars", bars)
+    run("report", written(tmp_path, [row(), row("ray")]))
+    assert "reading rows" in screen.getvalue()
+    assert "writing the page" in screen.getvalue()
+
+
 def test_studies_draw_with_a_bar_too() -> None:
     screen = StringIO()
     column = TextColumn("{task.description} {task.completed} of {task.total} {task.fields[more]}")
