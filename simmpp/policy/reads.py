@@ -35,6 +35,15 @@ def knows_loads(policy: Policy) -> bool:
     return policy.to_holders or reads(policy, *GROUPS[LOADS])
 
 
+def settings_used(policy: Policy) -> tuple[str, ...]:
+    """The settings that make a difference to it: those that its hooks read, or that say when these
+    are asked, and what may be packed or merged."""
+    used = [name for name in NUMBERS if name in policy.counts or reads(policy, name)]
+    used += ["load_info"] if knows_loads(policy) else []
+    used += ["merge_requests"] if policy.asks else []
+    return (*used, *(["packing"] if len(policy.packings) > 1 else []))
+
+
 @cache
 def names_in(hook: Hook | None) -> frozenset[str]:
     """All names in a hook and in what it calls."""

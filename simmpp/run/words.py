@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from simmpp.config.keys import keys
+
 PAPER_WORDS = {
     "object": "object dataflow",
     "ray": "ray dataflow",
@@ -24,7 +26,12 @@ ACTIONS = {
 }
 """What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}
-CAUSES = {"scene": "the scene", "processors": "the number of PEs", "fraction": "the memory"}
+CAUSES = {
+    "scene": "the scene",
+    "processors": "the number of PEs",
+    "fraction": "the memory",
+    "folder": "the folder",
+}
 """Keys as what decides."""
 CLOSE = 1.1
 """Ratios up to here are told as percentages."""
@@ -36,12 +43,26 @@ def policy(title: str) -> str:
 
 
 def value(name: str, cell: Any) -> str:
-    """A key's value, alone: ``"5 %"``, ``"64"``, ``"mountain:5"``."""
+    """A key's value, alone: ``"5 %"``, ``"64"``, ``"mountain:5"``, ``"16 tests"``."""
+    unit = "" if isinstance(cell, str) or name == "processors" else unit_of(name)
+    return " ".join(filter(None, (bare(name, cell), unit)))
+
+
+def bare(name: str, cell: Any) -> str:
+    """The same without its unit."""
     if cell == "":
         return "none"
     if name == "fraction":
-        return f"{cell * 100:.3g} %"
+        return f"{cell * 100:.3g}"
     return f"{cell:g}" if isinstance(cell, float) else str(cell)
+
+
+def unit_of(name: str) -> str:
+    """What a key counts; nothing for those that have their units in their values."""
+    if name == "fraction":
+        return "%"
+    unit = keys()[name].expect.unit if name in keys() else ""
+    return "" if " or " in unit else unit
 
 
 def said(name: str, cell: Any) -> str:
