@@ -15,9 +15,9 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 
 Busy is who computes or communicates. The last four are what PEs wait; where only sums over PEs are
 known, as in rows of sweeps, they are one part, *waiting*, or *imbalance* if no message was sent.
-Where the machine's constants are not known, startups and copying are one, *communication*. Startups are
-those of all messages sent, so of the few that are still in flight at the end, too, and no more than
-all communication.
+Where the machine's constants are not known, startups and copying are one, *communication*. Startups
+are those of all messages sent, so of the few that are still in flight at the end, too, and no more
+than all communication.
 
 Parts are means over PEs and say where the time is; without one of them the makespan may be shorter
 by more than that, as where the busiest PE has most of it, or by less, as where others wait instead.
