@@ -125,7 +125,7 @@ MISTAKES = [
         "--export: value 'x.csv': expected a file .parquet or .npz",
     ),
     ("workload none.npz", "none.npz: there is no such file"),
-    ("machine cm5", "value 'cm5': expected a preset: bluegene-l, t3d, t3e, tpu-v4, xe6-hopper"),
+    ("machine cm5", "value 'cm5': expected a preset: bluegene-l, cloud, cpu-cluster, gpu-cluster"),
 ]
 
 
