@@ -46,7 +46,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
-    is_drawn = draws(memory, rules) or reads(policy.rules, "random")
+    is_random = reads(policy.rules, "random") or policy.load_info == "two"
+    is_drawn = draws(memory, rules) or is_random
     is_drawn = is_drawn and METHODS[settings.method].is_placed
     seed = point.seed if is_drawn else 0
     machine = constants_of(config)
@@ -76,7 +77,7 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
         return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))
-    ignored += [] if knows_loads(rules) else ["load_info"]
+    ignored += [] if knows_loads(rules) else ["load_info", "refresh_ps", "sample_ps"]
     ignored += [] if rules.asks else ["merge_requests"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)

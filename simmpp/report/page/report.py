@@ -31,8 +31,8 @@ from simmpp.report.page.together import warnings_of_all
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
-from simmpp.sweeps.winners.answer import Sentence
 from simmpp.sweeps.winners.points import Points, points_of
+from simmpp.sweeps.winners.sentence import Sentence
 
 PAGE = "report.html"
 LOOK_S = 1.0

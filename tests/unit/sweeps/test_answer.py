@@ -218,6 +218,8 @@ def test_further_axes_divide_the_winners() -> None:
 def test_the_points_of_a_sentence_are_the_winners() -> None:
     rows = along("processors", {4: RAY_WINS, 8: RAY_WINS})
     assert answer_of(rows)[0].points == (1, 3)  # ray dataflow at 4, at 8
+    rows = along("processors", {4: RAY_WINS, 8: OPEN})
+    assert [sentence.points for sentence in answer_of(rows)] == [(1,), (3,)]
 
 
 def test_a_makespan_of_nothing_is_no_error() -> None:
