@@ -12,7 +12,7 @@ from simmpp.run import words
 
 def facts(folder: Folder) -> list[str]:
     """One line: scenes, PEs, policies, seeds, rows."""
-    rows = folder.rows
+    rows = folder.rows or folder.bench
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     processors = sorted({row["processors"] for row in rows})
     named = ", ".join(scenes) if len(scenes) <= 4 else counted(len(scenes), "scene")
@@ -22,7 +22,9 @@ def facts(folder: Folder) -> list[str]:
     pes = words.said("processors", processors[0])
     if len(processors) > 1:
         pes = f"{processors[0]} to {processors[-1]} PEs"
-    return [*parts, named, pes, counted(folder.seeds, "seed"), counted(len(rows), "row")]
+    methods = counted(len({row["method"] for row in rows}), "method")
+    drawn = counted(folder.seeds, "seed") if folder.rows else methods
+    return [*parts, named, pes, drawn, counted(len(rows), "row")]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:
