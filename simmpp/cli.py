@@ -13,6 +13,7 @@ from simmpp.common.errors import InputError, ModelError
 from simmpp.common.interrupts import last_word
 
 COMMANDS = {
+    "init": "Write a configuration to begin with, each key explained.",
     "run": "Compare dataflow policies at one point.",
     "sweep": "Simulate every combination of the values under the key sweep.",
     "report": "Make a page of what sweep, run, bench or reproduce wrote.",

@@ -23,6 +23,7 @@ from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.constants import CopiesConstants
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset
 
+REQUIRED = "(required)"
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
 HEADER = "| key | default | takes | unit | meaning |\n|---|---|---|---|---|\n"
 
@@ -56,7 +57,7 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
             mapping = "a mapping of the keys below"
             expected = Expect(f"{short.text}, or {mapping}" if short else mapping)
         default = "" if inner else default_of(f"{prefix}{key}", expected, field.get_default())
-        default = "(required)" if field.is_required() else default
+        default = REQUIRED if field.is_required() else default
         of_kind = of_one_kind or (cls is CopiesConstants and inner is not None)
         meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
         yield Key(f"{prefix}{key}", default, expected, meaning, pointer, of_kind)
