@@ -22,6 +22,7 @@ COMMANDS = {
     "model": "Say which dataflow the paper's analytical model expects to win.",
     "bench": "Measure the run time of each method against its error.",
     "reproduce": "Repeat the experiments of Nebel 1998 and judge its claims.",
+    "policy": "Write a policy of your own, and check it.",
     "scene": "List the objects and materials of a scene.",
     "workload": "List the rays of a picture, and which objects they need.",
     "machine": "Print every constant of a machine with its source.",

@@ -206,6 +206,30 @@ def of_a_later_version() -> File:
 
 
 ROTATED = [[(-2 * y, 2 * x, 0) for x, y, _ in face] for face in UNIT]
+
+
+def seen_and_lit() -> File:
+    """Glass with a texture, cameras and lights of all kinds, all below a mirrored node."""
+    file = File()
+    extensions = {"KHR_materials_transmission": {"transmissionFactor": 0.5}}
+    extensions |= {"KHR_materials_ior": {"ior": 1.25}}
+    base = {"baseColorTexture": {"index": 0}, "metallicFactor": 0}
+    glass = file.add("materials", pbrMetallicRoughness=base, extensions=extensions)
+    kinds = ("point", "spot", "directional")
+    lights = [{"type": kind, "color": [1, 0.5, 0], "intensity": 3} for kind in kinds]
+    file.json["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    file.add("cameras", type="perspective", perspective={"yfov": 0.7, "znear": 1})
+    file.add("cameras", type="orthographic")
+    placed = [
+        {"mesh": file.mesh(file.square(material=glass))},
+        *({"camera": number, "translation": [0, number, 9]} for number in (0, 1)),
+        *({"extensions": {"KHR_lights_punctual": {"light": number}}} for number in (0, 1, 2)),
+    ]
+    children = [file.node(root=False, **node) for node in placed]
+    file.node(children=children, scale=[-1, 1, 1])
+    return file
+
+
 FEATURES: dict[str, tuple[Callable[[], File], Floats]] = {
     "plain": (plain, moved(UNIT)),
     "no indices": (without_indices, moved(UNIT)),
@@ -279,6 +303,7 @@ FEATURES: dict[str, tuple[Callable[[], File], Floats]] = {
         lambda: one_square(scale=[-1, 1, 1]),
         np.array(UNIT, dtype=float)[:, ::-1] * (-1, 1, 1),
     ),
+    "seen and lit": (seen_and_lit, np.array(UNIT, dtype=float)[:, ::-1] * (-1, 1, 1)),
     "one mesh in two nodes": (
         one_mesh_in_two_nodes,
         np.concatenate([moved(UNIT), moved(UNIT, offset=(5, 0, 0))]),

@@ -92,7 +92,7 @@ def _facts(facts: dict[str, Any]) -> list[str]:
         facts["view"],
     ]
     if facts["cameras"]:
-        names = [f"{number} ({name})" for number, name in enumerate(facts["cameras"])]
+        names = [f"{number} ({name!r})" for number, name in enumerate(facts["cameras"])]
         rest = [f"... {len(names) - CAMERAS_SHOWN} more"] if len(names) > CAMERAS_SHOWN else []
         lines.append(f"cameras of the file: {', '.join(names[:CAMERAS_SHOWN] + rest)}")
     lines += facts["notes"]

@@ -11,7 +11,6 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from simmpp.engine.state import State
 from simmpp.policy.hooks import address_of
 from simmpp.policy.mistakes import file_of, line_in
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.plain import plain_view
 from simmpp.policy.policy import Hook
 from simmpp.policy.view import View
 
@@ -81,7 +81,7 @@ def _explained(
     for hook in policy.rules.hooks.values():
         for view in views:
             try:
-                hook(as_plain(view, names))
+                hook(plain_view(view, names))
             except Exception as again:
                 return _said(again, hook, line_in(hook.__code__.co_filename, again))
     return _said(error, next(iter(policy.rules.hooks.values())), None)
@@ -91,10 +91,3 @@ def _said(error: BaseException, hook: Hook, line: int | None) -> ConfigError:
     text = " ".join(str(error).split())
     problem = f"{hook.__name__}: {type(error).__name__}: {text}"
     return ConfigError(problem, where=file_of(hook), line=line)
-
-
-def as_plain(record: np.void, parameters: tuple[str, ...]) -> View:
-    """A view as plain Python has it."""
-    values: dict[str, Any] = {name: record[name].tolist() for name in View.__annotations__}
-    own = dict(zip(parameters, values["parameter"], strict=False))
-    return SimpleNamespace(**own, **values)  # type: ignore[return-value]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -32,11 +33,14 @@ from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.policy import Policy
+from simmpp.policy.policy import Hook, Policy
 from simmpp.policy.reads import groups_read, knows_loads, reads
 from simmpp.policy.record import VIEW
 from simmpp.policy.view import NUMBERS
 from simmpp.workload.workload import Workload
+
+AddressOf = Callable[[Hook | None, tuple[str, ...]], int]
+"""Where a hook of a policy with these numbers of its own can be called."""
 
 
 def new_state(
@@ -48,6 +52,7 @@ def new_state(
     ready_order: str,
     seed: int = 0,
     recording: Recording = NOTHING,
+    address_of: AddressOf = address_of,
 ) -> State:
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     policy = parameters.rules
@@ -67,7 +72,7 @@ def new_state(
     }
     scalars = {name: getattr(machine, name) for name in MACHINE}
     scalars |= _of_the_run(workload, machine, placement)
-    scalars |= _of_the_policy(parameters, views)
+    scalars |= _of_the_policy(parameters, views, address_of)
     scalars["random_key"] = key(seed, "policy")
     state = State(arrays, scalars | flags, recording.sink)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
@@ -160,7 +165,9 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
     }
 
 
-def _of_the_policy(parameters: PolicyParameters, views: NDArray[np.void]) -> dict[str, int]:
+def _of_the_policy(
+    parameters: PolicyParameters, views: NDArray[np.void], address_of: AddressOf
+) -> dict[str, int]:
     policy = parameters.rules
     load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
     listens = knows_loads(policy) and load_info == PIGGYBACK

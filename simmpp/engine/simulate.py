@@ -17,7 +17,9 @@ from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
+from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters, policy_of
+from simmpp.policy.plain import PlainHooks
 from simmpp.policy.policy import Policy
 from simmpp.workload.workload import Workload
 
@@ -39,13 +41,15 @@ def simulate(
     ready_order: str = "depth-first",
     seed: int = 0,
     record: Recording = NOTHING,
+    plain_hooks: PlainHooks | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Replay a workload on a simulated machine.
 
     A policy's name stands for it with its defaults, and so does a policy of one's own. ``seed`` is
     that of the random numbers that a policy may be given. ``record`` says what is noted besides the
-    totals. ``progress`` is called now and then with the number of rays left.
+    totals. With ``plain_hooks`` the policy's hooks are called as plain Python, slowly. ``progress``
+    is called now and then with the number of rays left.
 
     Raises ConfigError or WorkloadError on arguments that do not fit together, ConfigError for an
     exception in a hook of a policy, with file and line, ModelError if rays are left and nothing is
@@ -64,6 +68,7 @@ def simulate(
         ready_order=ready_order,
         seed=seed,
         recording=recording,
+        address_of=plain_hooks.address_of if plain_hooks else address_of,
     )
     run = ENGINES[engine](state, progress)
     try:

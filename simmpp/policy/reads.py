@@ -11,7 +11,7 @@ from functools import cache
 from types import CodeType, FunctionType, ModuleType
 
 from simmpp.policy.policy import Hook, Policy
-from simmpp.policy.view import GROUPS, LOADS
+from simmpp.policy.view import GROUPS, LOADS, NUMBERS
 
 
 def groups_read(hook: Hook | None) -> int:
@@ -22,7 +22,12 @@ def groups_read(hook: Hook | None) -> int:
 
 def reads(policy: Policy, *names: str) -> bool:
     """Does any hook of the policy read one of these fields?"""
-    return any(not names_in(hook).isdisjoint(names) for hook in (policy.send, policy.ask))
+    return any(not names_in(hook).isdisjoint(names) for hook in policy.hooks.values())
+
+
+def numbers_read(policy: Policy) -> list[str]:
+    """The numbers of ``PolicyParameters`` that decide what it does."""
+    return [name for name in NUMBERS if name in policy.counts or reads(policy, name)]
 
 
 def knows_loads(policy: Policy) -> bool:

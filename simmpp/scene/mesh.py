@@ -1,7 +1,7 @@
 """Meshes of files, cut into objects.
 
-Colours come from the file: the base colour of a material, or the mean of vertex or face colours;
-textures are not read. A glTF material reflects if it is clearly a mirror; everything is opaque.
+Materials come from the file (of glTF, and of OBJ's MTL), or else a colour: the mean of those of
+vertices or faces. Textures are not read.
 """
 
 from __future__ import annotations

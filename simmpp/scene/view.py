@@ -173,6 +173,6 @@ def _named(scene: Scene, wanted: str | int) -> tuple[str, Camera]:
         found = [(name, camera) for name, camera in cameras if name == wanted]
     if found:
         return found[0]
-    known = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(cameras[:10]))
+    known = ", ".join(f"{number} ({shown(name)})" for number, (name, _) in enumerate(cameras[:10]))
     problem = f"the file has no camera {shown(wanted)}: expected {known or 'none, it has none'}"
     raise SceneError(problem, where=scene.name)

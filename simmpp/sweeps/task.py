@@ -13,7 +13,7 @@ from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import CEILING, PolicyParameters
-from simmpp.policy.reads import knows_loads, reads
+from simmpp.policy.reads import knows_loads, numbers_read, reads
 from simmpp.policy.view import NUMBERS
 from simmpp.sweeps.grid import GridPoint
 
@@ -70,7 +70,7 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     if rules.all_resident:
         return PolicyParameters(CEILING)
     ignored = ["label"]
-    ignored += [name for name in NUMBERS if not reads(rules, name) and name not in rules.counts]
+    ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))
     ignored += [] if knows_loads(rules) else ["load_info"]
     ignored += [] if rules.asks else ["merge_requests"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from mesh_files import SQUARE, U, obj, off, ply, stl, stl_text
 
 from simmpp.common.errors import SceneError
-from simmpp.scene.mesh import READERS
+from simmpp.scene.check import check_scene
+from simmpp.scene.mesh import READERS, load_mesh
 from simmpp.scene.packed import read_whole
 
 SOUP = [*SQUARE, *((x + 5, y, 1) for x, y, _ in U)], [range(4), (0, 1, 2), range(4, 12)]
@@ -92,7 +93,7 @@ def read_or_refused(kind: str, content: bytes) -> None:
     with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):  # as load_mesh
         warnings.simplefilter("error")
         try:
-            nodes = READERS[kind](content, Path(f"a.{kind}"))
+            nodes = READERS[kind](content, Path(f"a.{kind}")).nodes
         except SceneError as error:
             TRIED[f"{kind}: refused"] += 1
             message = str(error)
@@ -115,6 +116,24 @@ def test_damaged(kind: str) -> None:
         read_or_refused(kind, random.choice(WAYS)(random.choice(FILES[kind]), kind, random))
 
     any_damage()
+
+
+MTL = (
+    b"newmtl a\nKd 1 0.5 0\nKs 0.2 0.2 0.2\nNs 90\nd 0.5\nNi 1.5\nillum 7\nTf 1 1 1\n"
+    b"newmtl b # c\nKd 1\nTr 0.25\nmap_Kd b.png\n"
+)
+WORDS["mtl"] = "newmtl Kd Ks Ns d Tr Ni illum Tf map_Kd spectral xyz -halo # \\ a é"
+
+
+@examples(1000)
+@given(st.integers(0, 2**32))
+def test_a_damaged_library_is_read(seed: int) -> None:
+    random = Random(seed)
+    Path("a.mtl").write_bytes(random.choice(WAYS)(MTL, "mtl", random))
+    Path("a.obj").write_bytes(b"mtllib a.mtl\nusemtl a\n" + obj(*SOUP) + b"usemtl b\nf 1 2 3\n")
+    scene = load_mesh("a.obj")
+    check_scene(scene)
+    assert all(note.isprintable() for note in scene.origin.notes)
 
 
 @examples(200)

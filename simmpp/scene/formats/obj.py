@@ -1,4 +1,4 @@
-"""Wavefront OBJ: polygons, objects and the colours of materials.
+"""Wavefront OBJ: polygons, objects and the their materials.
 
 Each pair of an object (``o``) and a material is a node; groups (``g``) part it if asked
 for. Source:
@@ -13,9 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from simmpp.common.units import shown as quoted
 from simmpp.scene.cut import Indices
 from simmpp.scene.formats.colours import as_bytes, matt
-from simmpp.scene.formats.mtl import materials
+from simmpp.scene.formats.mtl import Surface, materials
 from simmpp.scene.formats.polygons import Polygons, triangulated
 from simmpp.scene.formats.text import Source, decoded, floats, integers, named, shown
 from simmpp.scene.node import Content, Node
@@ -156,19 +157,33 @@ class _Statements:
 def _content(parts: dict[Names, Indices], statements: _Statements, polygons: Polygons) -> Content:
     """The named parts with what the file says of their surfaces."""
     file = statements.source.file
-    surfaces: dict[str, Material | None] = {}
-    for names in statements.libraries:
-        surfaces = materials(names, file.parent) | surfaces
+    surfaces, notes = _surfaces(statements, {material for *_, material in parts})
     several = len(surfaces) > 1 or len({material for *_, material in parts}) > 1
     painted = statements.painted()
     meshes = []
     for (obj, group, material), faces in parts.items():
-        surface = surfaces.get(material)
-        if surface is None:
-            surface = Material() if painted is None else matt(painted[np.unique(faces)])
+        plain = Material() if painted is None else matt(painted[np.unique(faces)])
+        surface = surfaces[material].material(plain.colour) if material in surfaces else plain
         name = "_".join(filter(None, (obj, group, material if several else ""))) or file.name
         meshes.append(Node(name, polygons.vertices, faces, surface))
-    return Content(sorted(meshes, key=lambda node: node.name))
+    return Content(sorted(meshes, key=lambda node: node.name), notes=notes)
+
+
+def _surfaces(
+    statements: _Statements, used: set[str]
+) -> tuple[dict[str, Surface], tuple[str, ...]]:
+    """The materials of all libraries, and what of them is not as the file says."""
+    surfaces: dict[str, Surface] = {}
+    notes: list[str] = []
+    for names in statements.libraries:
+        library = materials(names, statements.source.file.parent)
+        surfaces = library.surfaces | surfaces
+        notes += library.notes
+    unknown = sorted(used - {"", *surfaces})
+    if unknown:
+        rest = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
+        notes.append(f"material {quoted(unknown[0])}{rest} is in no mtllib that was read: grey")
+    return surfaces, tuple(notes)
 
 
 def _logical_lines(text: str) -> Iterable[tuple[int, str]]:

@@ -11,12 +11,13 @@ import numpy as np
 
 from simmpp.common.errors import SceneError
 from simmpp.scene.cut import Indices
+from simmpp.scene.formats.colours import of_textures
 from simmpp.scene.gltf.accessors import Arrays
 from simmpp.scene.gltf.container import Buffers, split
 from simmpp.scene.gltf.document import compressed, item, parsed
 from simmpp.scene.gltf.places import copies, worlds
 from simmpp.scene.gltf.schema import Document, Primitive
-from simmpp.scene.gltf.surfaces import material
+from simmpp.scene.gltf.surfaces import material, textured
 from simmpp.scene.gltf.views import cameras_in, lights_in
 from simmpp.scene.node import Content, Node, placed
 from simmpp.scene.scene import Floats, Material
@@ -52,7 +53,10 @@ def content(data: bytes, file: Path) -> Content:
         nodes = list(_nodes(document, places, Arrays(document, buffers)))
         cameras, why_not = cameras_in(document, places)
         lights, suns, of_lights = lights_in(document, places)
-        return Content(nodes, cameras, lights, suns, (*why_not, *of_lights))
+        notes = [*why_not, *of_lights]
+        if names := textured(document):
+            notes.append(of_textures(names))
+        return Content(nodes, cameras, lights, suns, tuple(notes))
     except SceneError as error:
         raise SceneError(error.problem, where=str(file)) from None
 

@@ -193,8 +193,10 @@ class MetallicRoughness(_Part):
     """A surface as glTF 2.0 describes it."""
 
     base_color_factor: Vec4 | None = None
+    base_color_texture: Any = None
     metallic_factor: float = 1.0
     roughness_factor: float | None = None
+    metallic_roughness_texture: Any = None
 
 
 class SpecularGlossiness(_Part):
@@ -212,19 +214,47 @@ class SpecularGlossiness(_Part):
         return not (self.diffuse_texture is None and self.specular_glossiness_texture is None)
 
 
+class Transmission(_Part):
+    """How much of the light that is not reflected passes."""
+
+    transmission_factor: Annotated[float, Field(ge=0, le=1)] = 0.0
+    transmission_texture: Any = None
+
+
+class Refraction(_Part):
+    """How far what passes is bent."""
+
+    ior: Annotated[float, Field(ge=0)] = 1.5
+
+
 class MaterialExtensions(_Part):
     """What a material's extensions say."""
 
     specular: SpecularGlossiness | None = Field(
         default=None, alias="KHR_materials_pbrSpecularGlossiness"
     )
+    transmission: Transmission = Field(default=Transmission(), alias="KHR_materials_transmission")
+    refraction: Refraction = Field(default=Refraction(), alias="KHR_materials_ior")
 
 
 class Surface(_Part):
     """A material."""
 
+    name: str | None = None
     pbr_metallic_roughness: MetallicRoughness = MetallicRoughness()
     extensions: MaterialExtensions = MaterialExtensions()
+
+    @property
+    def is_textured(self) -> bool:
+        """Its factors alone don't say how it looks."""
+        plain, extended = self.pbr_metallic_roughness, self.extensions
+        specular = extended.specular is not None and extended.specular.is_textured
+        textures = (
+            plain.base_color_texture,
+            plain.metallic_roughness_texture,
+            extended.transmission.transmission_texture,
+        )
+        return specular or any(texture is not None for texture in textures)
 
 
 class Document(_Part):

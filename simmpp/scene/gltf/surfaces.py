@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from simmpp.scene.gltf.document import item
-from simmpp.scene.gltf.schema import Document, SpecularGlossiness, Surface
+from simmpp.scene.gltf.schema import Document, Refraction, SpecularGlossiness, Surface
 from simmpp.scene.scene import Floats, Material, Vector
 
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
@@ -41,7 +41,23 @@ def _of_surface(surface: Surface) -> Material:
         colour, roughness = _colour(solved), 1 - specular.glossiness_factor
     if roughness is not None and metallic >= LEAST_METALLIC and roughness <= MOST_ROUGHNESS:
         return Material(colour, kd=MIRROR, ks=MIRROR)
-    return Material(colour)
+    transmitted = surface.extensions.transmission.transmission_factor * (1 - metallic)
+    if not transmitted > 0:
+        return Material(colour)
+    # An index of 0 stands for older materials' ways, which have none.
+    ior = surface.extensions.refraction.ior or Refraction().ior
+    straight_on = ((ior - 1) / (ior + 1)) ** 2
+    return Material(colour, 1 - transmitted, straight_on, transmittance=transmitted, ior=ior)
+
+
+def textured(document: Document) -> list[str]:
+    """The materials in use whose textures are not read: their names, or numbers without."""
+    used = {p.material for mesh in document.meshes for p in mesh.primitives}
+    return [
+        surface.name or str(number)
+        for number, surface in enumerate(document.materials)
+        if number in used and surface.is_textured
+    ]
 
 
 def _metallic(surface: SpecularGlossiness) -> tuple[Floats, float]:

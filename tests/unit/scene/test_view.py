@@ -216,7 +216,7 @@ def test_no_parts() -> None:
 
 
 def test_cameras_that_a_file_with_cameras_has_not() -> None:
-    expected = "expected 0 (Front), 1 (Down)"
+    expected = "expected 0 ('Front'), 1 ('Down')"
     assert refusal(mesh="seen.glb", camera=2).endswith(f"the file has no camera 2: {expected}")
     assert refusal(mesh="seen.glb", camera="Flat").endswith(f"no camera 'Flat': {expected}")
     assert "or up [0.0, 1.0, 0.0] is along" in refusal(mesh="seen.glb", camera="Down", up="y")

@@ -165,6 +165,63 @@ def test_diffuse_colours(tmp_path: Path, line: str) -> None:
     assert named(tmp_path, text) == [("a.obj", DIFFUSE[line])]
 
 
+GLASS = "illum 9\nd 0.25\nNi 1.5\nKs 0.2 0.4 0\nNs 90\n"
+KS = 51 / 255  # the mean of 0.2, 0.4 and 0
+FINISHES = {
+    "Ks 1 1 1\nNs 90": (1, 0, 1, 0, 1),
+    "Ks 0.2 0.4 0\nNs 90\nillum 2": (1, 0, 1, 0, 1),
+    "Ks 0.2 0.4 0\nNs 90\nillum 3": (1, KS, 90, 0, 1),
+    "Ks 0.2 0.4 0\nNs 0\nillum 5\nNi 1.5": (1, KS, 1, 0, 1),
+    "Ks 0.2 0.4 0\nNs 90\nillum 8": (1, 0, 1, 0, 1),
+    GLASS: (0.25, KS, 90, 0.75, 1.5),
+    "d 0.25": (0.25, 0, 1, 0.75, 1),
+    "d -halo 0.25": (0.25, 0, 1, 0.75, 1),
+    "Tr 0.75\nNi 0": (0.25, 0, 1, 0.75, 1),
+    "Tr 1\nd 1\nNi 1.5": (1, 0, 1, 0, 1),
+    "d 7\nTr nan": (1, 0, 1, 0, 1),
+    "d -7": (0, 0, 1, 1, 1),
+    "d glass\nNs none\nillum": (1, 0, 1, 0, 1),
+    "Tf 1 1 1\nNi 1.5\nillum 7": (0, 0, 1, 1, 1.5),
+    "Tf 1 1 1\nNi 1.5\nillum 4": (1, 0, 1, 0, 1),
+}
+
+
+@pytest.mark.parametrize("lines", FINISHES)
+def test_mirrors_and_glass(tmp_path: Path, lines: str) -> None:
+    (tmp_path / "m.mtl").write_text(f"newmtl a\n{lines}\nKd 1 0 0 # red\n")
+    scene = read(tmp_path, "a.obj", f"mtllib m.mtl\n{TRIANGLE}usemtl a\n{FACE}".encode())
+    (found,) = scene.materials
+    assert found.colour == RED and scene.origin.notes == ()
+    finish = (found.kd, found.ks, found.shine, found.transmittance, found.ior)
+    assert finish == pytest.approx(FINISHES[lines], abs=1e-12)
+
+
+def test_glass_may_have_the_colours_of_vertices(tmp_path: Path) -> None:
+    (tmp_path / "m.mtl").write_text(f"newmtl a\n{GLASS}")
+    painted = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\n"
+    scene = read(tmp_path, "a.obj", f"mtllib m.mtl\n{painted}usemtl a\n{FACE}".encode())
+    assert scene.materials[0].colour == RED and scene.materials[0].transmits
+
+
+NOTES = {
+    "mtllib none.mtl": "mtllib 'none.mtl' is left out: can't read the file: No such file or",
+    "mtllib none.mtl m.mtl": "mtllib 'none.mtl' is left out: can't read the file: No such file or",
+    "mtllib m.mtl\nusemtl other": "material 'other' is in no mtllib that was read: grey",
+    "mtllib m.mtl\nusemtl a": "textures of 'a' and 1 more are not read: their colours are the one",
+    "mtllib \u7acb.mtl": "mtllib '\u7acb.mtl' is left out: can't read the file",
+    "usemtl a": "material 'a' is in no mtllib that was read: grey",
+    "mtllib s.mtl": "Kd of 'c' is no colour of one number or three: grey",
+}
+
+
+@pytest.mark.parametrize("lines", NOTES)
+def test_what_is_not_read_is_said(tmp_path: Path, lines: str) -> None:
+    (tmp_path / "m.mtl").write_text("newmtl a\nmap_Kd a.png\nnewmtl b\nKd 1 1 1\nmap_kd b.png\n")
+    (tmp_path / "s.mtl").write_text("newmtl c\nKd spectral c.rfl\n")
+    scene = read(tmp_path, "a.obj", f"{lines}\n{TRIANGLE}{FACE}".encode())
+    assert any(note.startswith(NOTES[lines]) for note in scene.origin.notes)
+
+
 @pytest.mark.parametrize("library", ["none.mtl", "x" * 300, "\0", ".", "/dev/zero", "bad.mtl.gz"])
 def test_without_its_library_it_is_grey(tmp_path: Path, library: str) -> None:
     (tmp_path / "bad.mtl.gz").write_bytes(b"\x1f\x8b\x00")

@@ -10,6 +10,7 @@ import pytest
 import trimesh
 from gltf_files import File, nodes, one_square
 
+from simmpp.scene.gltf.read import content
 from simmpp.scene.scene import Material
 
 
@@ -84,3 +85,38 @@ def test_a_textured_specular_surface_is_taken_by_what_stands_beside(texture: str
     assert painted(extensions=specular) == Material()
     beside = {"baseColorFactor": [1, 0, 0, 1]}
     assert painted(extensions=specular, pbrMetallicRoughness=beside) == Material((1, 0, 0))
+
+
+def glass(factor: float = 1.0, ior: float | None = None, **values: Any) -> Material:
+    extensions: dict[str, Any] = {"KHR_materials_transmission": {"transmissionFactor": factor}}
+    if ior is not None:
+        extensions["KHR_materials_ior"] = {"ior": ior}
+    values = {"metallicFactor": 0} | values
+    return painted(extensions=extensions, pbrMetallicRoughness=values)
+
+
+@pytest.mark.parametrize(
+    ("found", "kd", "ks", "transmittance", "ior"),
+    [
+        (glass(), 0, 0.04, 1, 1.5),
+        (glass(0.25, 2.0), 0.75, 1 / 9, 0.25, 2),
+        (glass(1, 1.0, roughnessFactor=1.0), 0, 0, 1, 1),
+        (glass(1, 0), 0, 0.04, 1, 1.5),
+        (glass(1, metallicFactor=0.5), 0.5, 0.04, 0.5, 1.5),
+        (glass(1, metallicFactor=0.9, roughnessFactor=0.1), 0.5, 0.5, 0, 1),
+        (glass(0), 1, 0, 0, 1),
+    ],
+)
+def test_glass(found: Material, kd: float, ks: float, transmittance: float, ior: float) -> None:
+    values = (found.kd, found.ks, found.transmittance, found.ior)
+    assert values == pytest.approx((kd, ks, transmittance, ior))
+
+
+def test_textures_are_said() -> None:
+    file = one_square()
+    textured = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}
+    file.add("materials", name="unused", **textured)
+    index = file.add("materials", name="bricks", **textured)
+    file.json["meshes"][0]["primitives"][0]["material"] = index
+    (note,) = content(file.gltf(), Path("a.gltf")).notes
+    assert note == "textures of 'bricks' are not read: its colour is the one without"
