@@ -66,7 +66,7 @@ class Commands(click.Group):
         if ctx.resilient_parsing:  # a shell completes words
             from simmpp.commands.parts.completion import command as with_words
 
-            return with_words(cmd_name, COMMANDS[cmd_name])
+            return with_words(cmd_name)
         module = import_module(f"simmpp.commands.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command

@@ -17,6 +17,7 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import Expect, Short, expectation, fields_of, inner_class, mark_of
 from simmpp.common.units import shown
+from simmpp.common.yamlfile import written
 from simmpp.config.overrides import key_path
 from simmpp.config.reading import MACHINE, POLICY, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
@@ -70,10 +71,12 @@ def default_of(name: str, expected: Expect, value: Any, reading: Reading | None 
     reading = reading or load_reading(DEFAULT_READING)
     part, _, key = name.partition(".")
     default = _written(name, expected, value)
-    texts = [str(reading.values.get(part, {}).get(key, default))]
+    texts = [written(reading.values.get(part, {}).get(key, default))]
     if part == POLICY:
         of_policies = reading.policies.items()
-        texts += [f"{said[key]} for {policy}" for policy, said in of_policies if key in said]
+        texts += [
+            f"{written(said[key])} for {policy}" for policy, said in of_policies if key in said
+        ]
         texts = [text for text in texts if not text.startswith(f"{default} for ")]
     costs = reading.costs.get(DEFAULT_PRESET) if part == MACHINE else None
     if costs and (text := costs.text(key, expected.write)):

@@ -111,6 +111,19 @@ def default_shape(processors: int) -> tuple[int, int, int]:
     return min(shapes, key=lambda shape: (sum(shape), shape))
 
 
+def rounder(processors: int) -> list[int]:
+    """The nearest numbers of PEs, below and above, whose torus is at most half as far across.
+
+    None are looked for beyond an eighth of the number; none if it has a round torus itself.
+    """
+    across, reach = Torus(default_shape(processors)).diameter, processors // 8
+    found = []
+    for way in (-1, 1):
+        near = (processors + way * n for n in range(1, reach + 1))
+        found += [nb for nb in near if 2 * Torus(default_shape(nb)).diameter <= across][:1]
+    return found
+
+
 @kernel
 def ring_distance(size: int, a: int, b: int) -> int:
     """Hops from a to b on a ring of ``size`` PEs, the shortest way round."""
