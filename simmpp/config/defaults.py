@@ -8,9 +8,11 @@ from typing import Any
 from simmpp.config.axes import SAME, meet
 from simmpp.config.reading import MACHINE, POLICY, Line, Reading
 from simmpp.config.settings import Settings, long_policies
-from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, REFERENCE
+from simmpp.policy.file import PolicyFile, policy_of_file
+from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, REFERENCE
 
 READING = "reading"
+PACKING = "packing"
 
 
 def filled(data: Mapping[str, Any], reading: Reading) -> dict[str, Any]:
@@ -44,13 +46,29 @@ def _filled(data: Mapping[str, Any], reading: Reading) -> tuple[dict[str, Any], 
             used |= dict.fromkeys(f"{part}.{key}" for key in new)
     policies: list[Any] = []
     for entry in long_policies(data.get(POLICY, {"name": DEFAULT_POLICY})):
-        if isinstance(entry, dict) and entry.get("file") is None:
-            name = str(entry.get("name", DEFAULT_POLICY))
-            new = _missing(entry, reading.policies.get(name, {}), POLICY)
+        if isinstance(entry, dict) and (name := _like(entry)):
+            new = _missing(entry, _that_it_can(entry, reading.policies.get(name, {})), POLICY)
             used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in new)
             entry = {**entry, **new}
         policies.append(entry)
     return {**whole, POLICY: policies}, used
+
+
+def _like(entry: Mapping[str, Any]) -> str:
+    """The policy whose values a reading sets hold for this one; empty: none."""
+    if (file := entry.get("file")) is not None:
+        return policy_of_file(file).like if isinstance(file, PolicyFile) else ""
+    name = str(entry.get("name", DEFAULT_POLICY))
+    return (name in POLICIES and POLICIES[name].like) or name
+
+
+def _that_it_can(entry: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """These values, but for how to pack if a policy of one's own can't pack so."""
+    file = entry.get("file")
+    left_out = isinstance(file, PolicyFile) and values.get(PACKING) not in (
+        policy_of_file(file).packings
+    )
+    return {key: value for key, value in values.items() if key != PACKING or not left_out}
 
 
 def _missing(given: Mapping[str, Any], values: Mapping[str, Any], part: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
-from simmpp.common.places import KeyPath, misplaced
+from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, point_at
 from simmpp.config.settings import long_policies
@@ -74,19 +74,19 @@ def _ignored(config: Config, swept: Sequence[str]) -> Iterator[str]:
     What is ``swept`` meets policies at other points.
     """
     entries = long_policies(config.kept_source.data.get(POLICY, ()))
-    said: dict[tuple[str, object, int | None], list[tuple[KeyPath, PolicyParameters]]] = {}
+    said: dict[tuple[str, Place], list[tuple[KeyPath, PolicyParameters]]] = {}
     for n, (entry, policy) in enumerate(zip(entries, config.settings.policy, strict=False)):
         for key in entry if isinstance(entry, dict) else ():
             if f"{POLICY}.{key}" in swept:
                 continue
-            path = (POLICY, n, key)
-            where, line = config.places.get(path, (path, None))
-            said.setdefault((key, where, line), []).append((path, policy))
-    for (key, where, _), given in said.items():
+            path: KeyPath = (POLICY, n, key)
+            place = config.places.get(path, ("", n))
+            said.setdefault((key, place), []).append((path, policy))
+    for (key, (where, _)), given in said.items():
         path, ignoring = given[0][0], [p.title for _, p in given if key in _not_read(p)]
         if len(ignoring) == len(given):
             told = f"{', '.join(ignoring)} {'ignores' if len(ignoring) == 1 else 'ignore'} {key}"
-            is_option = str(where).startswith("--")
+            is_option = where.startswith("--")
             yield f"{where}: {told}" if is_option else str(misplaced(path, told, config.places))
 
 

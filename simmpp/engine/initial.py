@@ -60,7 +60,8 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays |= holder_arrays(workload, placement, wanted=reads(policy, "holders"))
+    wants_holders = policy.to_holders or reads(policy, "holders")
+    arrays |= holder_arrays(workload, placement, wanted=wants_holders)
     arrays["policy_views"] = views = _policy_views(workload, placement, parameters)
     flags = {
         "depth_first": ready_order == "depth-first",
@@ -95,12 +96,13 @@ def _sizes(
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
+    each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
     return Sizes(
         nb=nb,
         objects=n_objects,
         rays=n_rays,
         misses=1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1)),
-        peers=1 + min(nb * nb, 2 * workload.n_tests),
+        peers=1 + min(nb * nb, 2 * workload.n_tests * each),
         sent=sent,
         tested=workload.n_tests if recording.tests else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
@@ -190,6 +192,7 @@ def _of_the_policy(
         "send_reads": groups_read(policy.send),
         "ask_reads": groups_read(policy.ask),
         "remembers": _remembers(policy),
+        "to_holders": policy.to_holders,
         "load_info": load_info,
         "listens": listens,
         "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,

@@ -8,6 +8,23 @@ from typing import NamedTuple
 LOG_MARGIN = 1.2
 """Factor of room beyond both ends of a logarithmic axis."""
 
+PART_COLOURS = {
+    "compute": 0,
+    "communication": 1,
+    "startups": 1,
+    "copying": 4,
+    "one hot PE": 5,
+    "imbalance": 3,
+    "latency": 2,
+    "bandwidth": 6,
+    "waiting": 2,
+    "requests": 0,
+    "objects": 1,
+    "rays": 3,
+    "loads": 2,
+}
+"""Number of the colour of each part of a bar."""
+
 
 class Spread(NamedTuple):
     """A mean over seeds, and how far these, or its interval, reach."""

@@ -18,7 +18,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
 from simmpp.common.files import replaced
-from simmpp.plot.curves import Bars, Curve, Panel, Scale, Stated
+from simmpp.plot.curves import PART_COLOURS, Bars, Curve, Panel, Scale, Stated
 
 STYLES: tuple[dict[str, Any], ...] = (
     {"color": "#0072B2", "marker": "o", "linestyle": "-"},
@@ -41,8 +41,11 @@ PART_STYLES: tuple[dict[str, Any], ...] = (
     {"facecolor": "#e8963a", "hatch": "\\\\\\"},
     {"facecolor": "#d5dbe1"},
     {"facecolor": "#8c62b3", "hatch": "////"},
+    {"facecolor": "#f3cfa0"},
+    {"facecolor": "#b3423a", "hatch": "...."},
+    {"facecolor": "#7f93a6", "hatch": "xxxx"},
 )
-"""Of bars, bottom first: they differ in lightness too."""
+"""Of parts of bars, by the number of their colour: they differ in lightness too."""
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH, SCREEN_DOTS_PER_INCH = 6.3, 4.1, 200, 96
 MOST_IN_TWOS = 4
 """Panels up to which two are side by side; of more it is three."""
@@ -142,7 +145,8 @@ def _draw_bars(axes: Axes, bars: Bars) -> None:
     """Parts on top of each other, one bar for each name."""
     places = range(len(bars.x.names))
     bottom = [0.0] * len(places)
-    for (part, heights), style in zip(bars.parts.items(), PART_STYLES, strict=False):
+    for part, heights in bars.parts.items():
+        style = PART_STYLES[PART_COLOURS[part]]
         axes.bar(places, heights, 0.85, bottom, label=part, edgecolor="white", lw=0.3, **style)
         bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
     axes.set_xticks(places, bars.x.names, fontsize=7)

@@ -10,23 +10,13 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Sequence
 
-from simmpp.plot.curves import Bars, Curve, Panel, Spread, Stated
+from simmpp.plot.curves import PART_COLOURS, Bars, Curve, Panel, Spread, Stated
 from simmpp.plot.plotly_axes import Drawn, layout, limited, placed
 
 SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x")
 DASHES = ("solid", "dash", "dashdot", "longdash", "dot", "longdashdot", "solid")
 """Curves differ by markers and lines too, as in print."""
 N_COLOURS = len(SYMBOLS)
-PART_COLOURS = {
-    "compute": 0,
-    "communication": 1,
-    "waiting": 2,
-    "requests": 0,
-    "objects": 1,
-    "rays": 3,
-    "loads": 2,
-}
-"""Number of the colour of each part of a bar."""
 
 
 def script() -> str:

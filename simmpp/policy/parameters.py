@@ -40,6 +40,7 @@ from simmpp.common.units import shown
 from simmpp.common.validate import MOST_COUNT
 from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
 from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
+from simmpp.policy.holders import HOLDERS
 from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
 from simmpp.policy.policy import Packing, Policy
 from simmpp.policy.ray_dataflow import RAY_DATAFLOW
@@ -62,6 +63,7 @@ POLICIES: dict[str, Policy] = {
     "ray": RAY_DATAFLOW,
     "concurrent": CONCURRENT_DATAFLOW,
     "replicated": REPLICATED,
+    "holders": HOLDERS,
 }
 REFERENCE, CEILING = "object", "replicated"
 """Run with every point: what profits are measured against, and no dataflow at all."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal, TypeVar
+from typing import Literal, TypeVar, get_args
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
@@ -20,6 +20,7 @@ Hook = Callable[[View], int]
 """What it returns says the field of Policy that holds it."""
 Packing = Literal["none", "requests", "all"]
 """What goes to one PE at one dispatch in one message: nothing, its requests, or everything."""
+Candidates = Literal["owner", "holders"]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
@@ -42,6 +43,12 @@ class Policy:
     a number. So an engine need not look at every PE again and again."""
     ask_at_least: int | str = 1
     """The same of ``ask``."""
+    candidates: Candidates = "owner"
+    """Where rays may go: the owner of the object that they need next; or all PEs that have it in
+    memory for good, asked about by the least known load, equal ones in ring order."""
+    like: str = ""
+    """A policy of the package: what a reading sets for it holds for this one too, as far as it can,
+    so that the two can be compared."""
     parameters: Mapping[str, int] = field(default_factory=dict)
     """Numbers of its own, at most 8, with what they are unless users set them. Hooks read the first
     as ``v.parameter[0]`` or by its name."""
@@ -53,6 +60,9 @@ class Policy:
             _require_hook(f"policy {self.name!r}: {what}", function)
         _require_numbers(self.name, self.parameters)
         _require_counts(self)
+        if self.candidates not in get_args(Candidates):
+            expected = f"value {shown(self.candidates)}: expected owner or holders"
+            raise ConfigError(f"policy {self.name!r}: candidates: {expected}")
 
     @property
     def hooks(self) -> dict[str, Hook]:
@@ -69,6 +79,11 @@ class Policy:
     def asks(self) -> bool:
         """The policy has a hook that asks for objects."""
         return self.ask is not None
+
+    @property
+    def to_holders(self) -> bool:
+        """Rays may go to any PE that holds what they need."""
+        return self.sends and self.candidates == "holders"
 
     @property
     def counts(self) -> tuple[int | str, int | str]:

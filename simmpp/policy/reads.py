@@ -31,8 +31,17 @@ def numbers_read(policy: Policy) -> list[str]:
 
 
 def knows_loads(policy: Policy) -> bool:
-    """Does it read loads of others? Without, headers are not remembered."""
-    return reads(policy, *GROUPS[LOADS])
+    """Does it read loads of others, or go by them? Without, headers are not remembered."""
+    return policy.to_holders or reads(policy, *GROUPS[LOADS])
+
+
+def settings_used(policy: Policy) -> tuple[str, ...]:
+    """The settings that make a difference to it: those that its hooks read, or that say when these
+    are asked, and what may be packed or merged."""
+    used = [name for name in NUMBERS if name in policy.counts or reads(policy, name)]
+    used += ["load_info"] if knows_loads(policy) else []
+    used += ["merge_requests"] if policy.asks else []
+    return (*used, *(["packing"] if len(policy.packings) > 1 else []))
 
 
 @cache

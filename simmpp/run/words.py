@@ -6,11 +6,14 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from simmpp.config.keys import keys
+
 PAPER_WORDS = {
     "object": "object dataflow",
     "ray": "ray dataflow",
     "concurrent": "concurrent dataflow",
     "replicated": "replicated scene",
+    "holders": "dataflow to all holders",
 }
 """Policies in the paper's words; a label of the user stays as it is."""
 ALONG = {"fraction": "the fraction of the scene", "processors": "the number of PEs"}
@@ -19,6 +22,7 @@ ACTIONS = {
     "ray": "Send the rays",
     "concurrent": "Let each node choose",
     "replicated": "Hold everything everywhere",
+    "holders": "Let each node choose among all that hold the object",
 }
 """What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}
@@ -34,12 +38,26 @@ def policy(title: str) -> str:
 
 
 def value(name: str, cell: Any) -> str:
-    """A key's value, alone: ``"5 %"``, ``"64"``, ``"mountain:5"``."""
+    """A key's value, alone: ``"5 %"``, ``"64"``, ``"mountain:5"``, ``"16 tests"``."""
+    unit = "" if isinstance(cell, str) or name == "processors" else unit_of(name)
+    return " ".join(filter(None, (bare(name, cell), unit)))
+
+
+def bare(name: str, cell: Any) -> str:
+    """The same without its unit."""
     if cell == "":
         return "none"
     if name == "fraction":
-        return f"{cell * 100:.3g} %"
+        return f"{cell * 100:.3g}"
     return f"{cell:g}" if isinstance(cell, float) else str(cell)
+
+
+def unit_of(name: str) -> str:
+    """What a key counts; nothing for those that have their units in their values."""
+    if name == "fraction":
+        return "%"
+    unit = keys()[name].expect.unit if name in keys() else ""
+    return "" if " or " in unit else unit
 
 
 def said(name: str, cell: Any) -> str:

@@ -58,7 +58,8 @@ def columns(objects: Sequence[SceneObject]) -> Columns:
     """The columns of objects."""
     flat = [obj for obj in objects if isinstance(obj, Polygon | MeshPart)]
     parts = [obj for obj in flat if isinstance(obj, MeshPart)]
-    kinds = np.array([KINDS.index(obj.kind) for obj in objects], dtype=np.uint8)
+    codes = {kind: code for code, kind in enumerate(KINDS)}
+    kinds = np.array([codes[obj.kind] for obj in objects], dtype=np.uint8)
     n_vertices, n_normals, n_faces = np.zeros((3, len(objects)), np.int64)
     n_vertices[kinds >= POLYGON] = [len(obj.vertices) for obj in flat]
     n_faces[kinds == MESH] = [len(part.faces) for part in parts]

@@ -30,6 +30,10 @@ Indices = NDArray[np.integer[Any]]
 """Whole numbers of any width."""
 Cut = Callable[[Floats, Indices], list[Indices]]
 """Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
+ODD = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB], np.uint64)
+"""Factors that spread neighbours apart. Source: S. Vigna, splitmix64."""
+HALF = np.uint64(32)
+Bits = NDArray[np.uint64]
 
 
 def cut_named(objects: object) -> tuple[str, Cut]:
@@ -55,24 +59,68 @@ def welded(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
 
     File formats repeat a vertex for each normal or texture coordinate; STL for each triangle.
     """
-    used = vertices[faces.ravel()]
-    order = np.lexsort(used.T)
-    ordered = used[order]
-    is_new = np.ones(len(order), dtype=np.bool_)
-    # Compared as numbers, not as bytes: 0.0 and -0.0 are one position.
-    is_new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
-    first = order[is_new]  # the sort is stable
-    rank = np.empty_like(first)
-    rank[np.argsort(first)] = np.arange(len(first))
-    index = np.empty_like(order)
-    index[order] = rank[np.cumsum(is_new) - 1]
-    return used[np.sort(first)], index.reshape(faces.shape)
+    corners = faces.ravel()
+    kind = np.dtype(np.int32 if len(corners) < 2**31 else np.int64)
+    same = _first_at_their_place(vertices)
+    places = corners if same is None else same[corners].astype(kind)
+    first: Indices = np.full(len(vertices), -1, kind)
+    # From the last corner to the first, which is the one that stays.
+    first[places[::-1]] = np.arange(len(places), dtype=kind)[::-1]
+    used = np.flatnonzero(first >= 0)
+    used = used[np.argsort(first[used])]
+    number = first  # of each place, from here on
+    kept = vertices[corners[first[used]]]
+    number[used] = np.arange(len(used))
+    return kept, number[places].reshape(faces.shape)
+
+
+def _first_at_their_place(vertices: Floats) -> NDArray[np.int64] | None:
+    """The first vertex (n,) that lies where each does; None if no two lie at one place.
+
+    Places are told apart by a number for each: sorting these takes a tenth of the time of sorting
+    places. Should two places get the same number, places are sorted after all.
+    """
+    bits = (vertices + 0.0).view(np.uint64)  # 0.0 and -0.0 are one position
+    numbers = _numbers(bits)
+    ordered = np.sort(numbers)
+    if len(ordered) < 2 or np.all(ordered[1:] != ordered[:-1]):
+        return None
+    order = np.argsort(numbers)
+    is_new, differs = _steps(numbers[order, None]), _steps(bits[order])
+    if not np.array_equal(is_new, differs):
+        order = np.lexsort(bits.T)
+        is_new = _steps(bits[order])
+    starts = np.flatnonzero(is_new)
+    first = np.empty_like(order)
+    first[order] = np.repeat(np.minimum.reduceat(order, starts), np.diff(starts, append=len(order)))
+    return first
+
+
+def _numbers(bits: Bits) -> Bits:
+    """A number for each row (n, 3), the same for equal ones."""
+    total = np.zeros(len(bits), np.uint64)
+    for axis, factor in enumerate(ODD):
+        # Products carry upwards only, and the lower half of what was float32 is empty.
+        column = bits[:, axis] ^ (bits[:, axis] >> HALF)
+        total += column * factor
+        total ^= total >> HALF
+        total *= factor
+    return total
+
+
+def _steps(rows: Bits) -> NDArray[np.bool_]:
+    """(n,) bool: which rows differ from those before them."""
+    steps = np.ones(len(rows), dtype=np.bool_)
+    steps[1:] = np.any(rows[1:] != rows[:-1], axis=1)
+    return steps
 
 
 def compacted(
     vertices: Floats, faces: Indices, parts: list[Indices]
 ) -> list[tuple[Floats, NDArray[np.int32]]]:
     """Of each part the vertices that its faces use, in order of index, and its faces into them."""
+    if len(parts) == 1 and _are_all_used(vertices, faces):
+        return [(vertices, faces[parts[0]].astype(np.int32, copy=False))]
     # One sort for all parts: a key is a vertex of one part, whichever others share it.
     sizes = np.array([len(rows) for rows in parts])
     part = np.repeat(np.arange(len(parts)), sizes)
@@ -89,6 +137,12 @@ def compacted(
     )
 
 
+def _are_all_used(vertices: Floats, faces: Indices) -> bool:
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[faces] = True
+    return bool(used.all())
+
+
 def _whole(_vertices: Floats, faces: Indices) -> list[Indices]:
     return [np.arange(len(faces))]
 
@@ -103,10 +157,13 @@ def _components(vertices: Floats, faces: Indices) -> list[Indices]:
     rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
     n = len(vertices)
     links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))
-    _, labels = connected_components(links, directed=False)
+    n_labels, labels = connected_components(links, directed=False)
+    if n_labels == 1:
+        return _whole(vertices, faces)
     label = labels[faces[:, 0]]
-    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
-    rank = np.argsort(np.argsort(first))[inverse]
+    first = np.full(n_labels, len(faces))
+    first[label[::-1]] = np.arange(len(faces))[::-1]
+    rank = np.argsort(np.argsort(first))[label]
     order = np.argsort(rank, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(rank[order])) + 1)
 

@@ -15,13 +15,14 @@ from pathlib import Path
 import numpy as np
 
 from simmpp.common.errors import SceneError
+from simmpp.common.garbage import uncollected
 from simmpp.common.units import counted
 from simmpp.scene.boxes import scene_box
 from simmpp.scene.cut import OF_OBJ, Cut, compacted, cut_named, welded
 from simmpp.scene.formats import obj, off, ply, stl
 from simmpp.scene.framing import far_off, framing
 from simmpp.scene.nff_words import LARGEST
-from simmpp.scene.node import Content, Node, placed, seen_through, transformed, turned
+from simmpp.scene.node import Content, Node, are_usable, placed, seen_through, transformed, turned
 from simmpp.scene.packed import kind_of, read_whole
 from simmpp.scene.parts import PartSettings
 from simmpp.scene.scene import SKY_BLUE, Floats, Light, Material, MeshPart, Origin, Scene
@@ -63,6 +64,7 @@ def load_mesh(
     return load_parts([PartSettings(mesh=fspath(path))], objects=objects, up=up)
 
 
+@uncollected()
 @np.errstate(over="ignore", invalid="ignore")  # what is not finite is refused here, in words
 def load_parts(
     parts: Sequence[PartSettings], *, objects: object = "components", up: str | None = None
@@ -153,7 +155,7 @@ def _put(content: Content, file: Path, matrix: Floats) -> Content:
     if (matrix != np.eye(4)).any():
         content = _moved(content, matrix)
     for node in content.nodes:
-        if not np.all(np.abs(node.vertices[node.faces]) <= LARGEST):
+        if not (are_usable(node.vertices) or are_usable(node.vertices[node.faces])):
             problem = f"a vertex of {node.name!r} is not a finite number of at most {LARGEST:g}"
             raise SceneError(problem, where=str(file))
     return content

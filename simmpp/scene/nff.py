@@ -7,14 +7,14 @@ absolute value.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable, Sequence
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import NoReturn
 
-import numpy as np
-
+from simmpp.common.garbage import uncollected
+from simmpp.scene.nff_objects import cones, patches, polygons, spheres
 from simmpp.scene.nff_text import EXACT
 from simmpp.scene.nff_words import Words
 from simmpp.scene.packed import name_of, read_whole
@@ -31,8 +31,6 @@ from simmpp.scene.scene import (
     Vector,
 )
 
-MAX_VERTICES = 1_000_000
-"""Largest polygon read; the SPD's largest has 144 vertices."""
 MAX_RESOLUTION = 65536
 WHITE: Vector = (1.0, 1.0, 1.0)
 
@@ -49,6 +47,7 @@ def load_nff(file: str | PathLike[str]) -> Scene:
     return read_nff(text, name=name_of(path), where=str(path))
 
 
+@uncollected()
 def read_nff(text: str, *, name: str, where: str) -> Scene:
     """The scene of an NFF text.
 
@@ -69,15 +68,15 @@ class _Reader:
         self.objects: list[SceneObject] = []
         self.materials: dict[Material, int] = {}
         self.material = -1
-        self.read = {
+        self.read: dict[str, Callable[[], None]] = {
             "v": self._view,
             "b": self._background,
             "l": self._light,
             "f": self._material,
-            "s": self._sphere,
-            "c": self._cone,
-            "p": self._polygon,
-            "pp": self._patch,
+            "s": partial(self._objects, spheres),
+            "c": partial(self._objects, cones),
+            "p": partial(self._objects, polygons),
+            "pp": partial(self._objects, patches),
         }
 
     def scene(self, name: str) -> Scene:
@@ -148,45 +147,10 @@ class _Reader:
         material = Material(colour, kd, ks, shine, transmittance, ior)
         self.material = self.materials.setdefault(material, len(self.materials))
 
-    def _current_material(self) -> int:
-        """The material of the next object: a default one before the first ``f``."""
-        if self.material < 0:
+    def _objects(self, read: Callable[[Words, int], Sequence[SceneObject]]) -> None:
+        if self.material < 0:  # before the first ``f``
             self.material = self.materials.setdefault(Material(), len(self.materials))
-        return self.material
-
-    def _sphere(self) -> None:
-        centre = self.words.vector("the centre of a sphere")
-        radius = abs(self.words.number("the radius of a sphere"))
-        if radius == 0:
-            self._fail("a sphere needs a radius other than 0")
-        self.objects.append(Sphere(centre, radius, self._current_material()))
-
-    def _cone(self) -> None:
-        base = self.words.vector("the base of a cone")
-        base_radius = self.words.number("the base radius of a cone")
-        apex = self.words.vector("the apex of a cone")
-        apex_radius = self.words.number("the apex radius of a cone")
-        if base_radius == 0 and apex_radius == 0:
-            self._fail("a cone needs a radius other than 0 at one end")
-        if base_radius * apex_radius < 0:
-            self._fail("the radii of a cone must have the same sign")
-        if math.dist(base, apex) == 0:
-            self._fail("a cone needs a length: its base and apex are the same point")
-        material = self._current_material()
-        self.objects.append(Cone(base, abs(base_radius), apex, abs(apex_radius), material))
-
-    def _polygon(self) -> None:
-        n = self.words.count("the number of vertices of a polygon", 3, MAX_VERTICES)
-        vertices = np.array(self.words.numbers(3 * n, "a vertex of a polygon")).reshape(n, 3)
-        self.objects.append(Polygon(vertices, None, self._current_material()))
-
-    def _patch(self) -> None:
-        n = self.words.count("the number of vertices of a patch", 3, MAX_VERTICES)
-        rows = np.array(self.words.numbers(6 * n, "a vertex or normal of a patch")).reshape(n, 6)
-        vertices, normals = rows[:, :3].copy(), rows[:, 3:].copy()
-        if not np.all(np.any(normals, axis=1)):
-            self._fail("a vertex normal of a patch has no length")
-        self.objects.append(Polygon(vertices, normals, self._current_material()))
+        self.objects += read(self.words, self.material)
 
     def _colour(self, what: str) -> Vector:
         colour = self.words.vector(what)

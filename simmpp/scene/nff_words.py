@@ -18,6 +18,7 @@ LARGEST = 1e30
 COMMENT = re.compile(r"#[^\r\n]*")
 FOREIGN = re.compile(r"[^\x21-\x7e\s]|_", re.ASCII)
 """Characters of no NFF word; ``float`` would take '1_0' and other scripts' digits."""
+OURS = bytes(byte for byte in range(128) if not FOREIGN.match(chr(byte)))
 
 
 class Words:
@@ -29,7 +30,9 @@ class Words:
     def __init__(self, text: str, where: str) -> None:
         self.where = where
         self.text = COMMENT.sub("", text)
-        foreign = FOREIGN.search(self.text)
+        # A tenth of the time of a search, which is needed where it finds something only.
+        is_ours = not self.text.encode(errors="surrogatepass").translate(None, OURS)
+        foreign = None if is_ours else FOREIGN.search(self.text)
         if foreign:
             line = self.text.count("\n", 0, foreign.start()) + 1
             problem = f"not an NFF text: unexpected character {foreign.group()!r}"
@@ -41,6 +44,11 @@ class Words:
     def left(self) -> bool:
         """Whether there are words left."""
         return self.position < len(self.words)
+
+    @property
+    def last(self) -> str:
+        """The word that was read last."""
+        return self.words[self.position - 1]
 
     def word(self, expected: str = "a keyword") -> str:
         """The next word, whatever it is."""

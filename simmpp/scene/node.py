@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simmpp.scene.cut import Indices
+from simmpp.scene.nff_words import LARGEST
 from simmpp.scene.scene import Camera, Floats, Light, Material, Vector
 
 
@@ -19,7 +20,7 @@ class Node(NamedTuple):
     vertices: Floats
     """(n, 3) float64, in the scene's coordinates."""
     faces: Indices
-    """(m, 3) int64 into ``vertices``, counter-clockwise seen from the outside."""
+    """(m, 3) into ``vertices``, counter-clockwise seen from the outside."""
     material: Material
 
 
@@ -34,6 +35,12 @@ class Content(NamedTuple):
     """Lights so far away that only their direction counts: ``position`` is the way to them."""
     notes: tuple[str, ...] = ()
     """What the file says that was not read, one line each."""
+
+
+def are_usable(vertices: Floats) -> bool:
+    """Whether all numbers are finite and at most LARGEST."""
+    low, high = vertices.min(initial=0.0), vertices.max(initial=0.0)  # NaN if one is
+    return bool(low >= -LARGEST and high <= LARGEST)
 
 
 def placed(vertices: Floats, faces: Indices, matrix: Floats) -> tuple[Floats, Indices]:

@@ -11,7 +11,8 @@ from sweep_rows import HOSTILE, written
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS
-from simmpp.report.page.folder import read_folder
+from simmpp.report.page.folder import Folder, read_folder
+from simmpp.report.page.limits import limits_of_points
 from simmpp.report.page.report import report_of, write_page
 from simmpp.run import words
 from simmpp.sweeps.winners.points import Points, points_of
@@ -98,6 +99,7 @@ def test_a_point_in_depth_shows_the_accounts_of_the_rows(
     opened: Any, report: Path, rows: list[Row]
 ) -> None:
     points = points_of(rows, ())
+    limits = limits_of_points(Folder(report.parent, rows), points)
     number = number_of(points, **CHOSEN)
     page = opened(report).page
     page.goto(f"{report.as_uri()}#point=mountain:4|64|0.1|concurrent")
@@ -107,7 +109,7 @@ def test_a_point_in_depth_shows_the_accounts_of_the_rows(
     for trace in chart.evaluate(
         "chart => chart.data.map(({name, x, customdata}) => ({name, x, customdata}))"
     ):
-        expected = [100 * points.shares(n)[trace["name"]] for n in trace["customdata"]]
+        expected = [100 * limits.shares(n)[trace["name"]] for n in trace["customdata"]]
         assert trace["x"] == pytest.approx(expected)
     chart = page.locator("#point-messages")
     for trace in chart.evaluate(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import asdict, replace
+from typing import get_args
 
 import pytest
 from builders import Case, random_case
@@ -17,7 +18,7 @@ from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.messages import OBJECT
 from simmpp.policy.parameters import POLICIES
-from simmpp.policy.policy import Hook, Policy
+from simmpp.policy.policy import Candidates, Hook, Policy
 from simmpp.policy.view import View
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "40"))
@@ -69,7 +70,7 @@ def only_when_idle(v: View) -> int:
 def of_whom_it_likes(v: View) -> int:
     seen = v.object + v.object_bytes + v.owner + v.requests + v.in_flight + v.known_load + v.load
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.test_ps + v.age_ps
-    v.memory[7] = v.memory[7] * 3 + seen + costs - v.unasked * v.holders
+    v.memory[7] = (v.memory[7] * 3 + seen + costs - v.unasked * v.holders) % 1000003
     return v.memory[7] % (v.nb + 4) + v.nothing_else
 
 
@@ -89,11 +90,24 @@ COUNTS = (("batch", "ask_at_least"), (1, 1), (3, "greed"))
 """From how many waiting rays on the two hooks are asked."""
 
 
-def adversary(send: Hook, ask: Hook, batch: int | str, ask_at_least: int | str) -> Policy:
+def adversary(
+    send: Hook,
+    ask: Hook,
+    batch: int | str,
+    ask_at_least: int | str,
+    candidates: Candidates = "owner",
+) -> Policy:
     """The hooks as a policy of the package."""
-    numbers = {"greed": 2, "envy": -7}
-    more = {"batch": batch, "ask_at_least": ask_at_least, "parameters": numbers}
-    return Policy("adversary", "none", send, ask, **more)  # type: ignore[arg-type]
+    return Policy(
+        "adversary",
+        "none",
+        send,
+        ask,
+        batch=batch,
+        ask_at_least=ask_at_least,
+        candidates=candidates,
+        parameters={"greed": 2, "envy": -7},
+    )
 
 
 def adversarial_case(seed: int) -> Case:
@@ -105,14 +119,16 @@ def adversarial_case(seed: int) -> Case:
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("send", "ask"), PAIRS)
 @pytest.mark.parametrize("counts", COUNTS)
+@pytest.mark.parametrize("candidates", get_args(Candidates))
 def test_every_integer_is_the_oracles(
     engine: str,
     send: Hook,
     ask: Hook,
     counts: tuple[int | str, int | str],
+    candidates: Candidates,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    policy = adversary(send, ask, *counts)
+    policy = adversary(send, ask, *counts, candidates)
     monkeypatch.setitem(POLICIES, "adversary", policy)
     for seed in range(CASES if counts == COUNTS[0] else CASES // 4):
         case = adversarial_case(seed)

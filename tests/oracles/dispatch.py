@@ -62,16 +62,29 @@ class Dispatch(Views):
             count = (known | own)[count]
         return waiting > 0 and (nothing_else or waiting >= count)
 
-    def sendable(self, pe: PE, owner: int) -> list[list[int]]:
-        """Rays that may be sent to an owner, object by object, in the order of the message."""
-        objects = {o for _, o, _ in pe.waiting if self.owners[o] == owner and not pe.in_flight[o]}
+    def candidates(self, pe: PE) -> list[int]:
+        """PEs that send is asked about, in this order."""
+        if self.rules.candidates == "owner":
+            return self.others(pe)
+        return sorted(self.others(pe), key=lambda other: self.known_load(pe.clock, pe, other)[0])
+
+    def may_go(self, obj: int, other: int) -> bool:
+        """May rays that need an object go there?"""
+        if self.rules.candidates == "owner":
+            return self.owners[obj] == other
+        return obj in self.pes[other].resident
+
+    def sendable(self, pe: PE, other: int) -> list[list[int]]:
+        """Rays that may be sent to a PE, object by object, in the order of the message."""
+        waited_for = {o for _, o, _ in pe.waiting if not pe.in_flight[o]}
+        objects = [o for o in waited_for if self.may_go(o, other)]
         by_age = sorted(objects, key=lambda o: pe.sendable_since[o])
         return [pe.rays_of(o) for o in by_age]
 
     def rays_to_send(self, pe: PE, nothing_else: bool, send: Hook) -> Iterator[tuple[int, Part]]:
-        """A batch to each owner that the hook lets any go to: of whole objects, until enough."""
+        """A batch to each PE that the hook lets any go to: of whole objects, until enough."""
         draws = "random" in names_in(send)
-        for owner in self.others(pe):
+        for owner in self.candidates(pe):
             groups, rays = self.sendable(pe, owner), list[int]()
             waiting = sum(map(len, groups))
             if not self.is_asked(waiting, self.rules.batch, nothing_else):

@@ -130,8 +130,8 @@ ARRAYS = {
     # Peers that rays or objects were exchanged with, one list per PE (for refresh).
     "exchanged_ends": Array(I4, lambda n: 2 * n.nb),
     "exchanged_links": Array(I4, lambda n: 2 * n.peers),
-    # Misses with sendable rays: one list per peer.
-    "sendable_ends": Array(I4, lambda n: 2 * n.peers),
+    # Misses with sendable rays: one list per peer or, with holders as candidates, per PE.
+    "sendable_ends": Array(I4, lambda n: 2 * max(n.peers, n.nb)),
     "sendable_links": Array(I4, lambda n: 2 * n.misses),
     "outbox": Array(I4, lambda n: n.sent),  # messages that the last step sent, in order
     # First parts, plus 1, of the messages that a dispatch is making up: of rays and what goes with
@@ -188,6 +188,7 @@ PARAMETERS = (
     "send_reads",  # groups of the view's fields
     "ask_reads",
     "remembers",  # each PE has a view of its own
+    "to_holders",  # rays may go to any PE that holds what they need
     "random_key",
     "initial_load",  # floor(n0 / nb): known of a PE before it is heard
     "load_info",

@@ -13,8 +13,8 @@ of PE 3 and ray 5 for object 21 of PE 0; PE 1 decides, still has ready rays and 
     ask   Object 21: 1 ray, not enough. Had send kept 4, 6 and 9, object 20 would be asked for,
           and from then on its rays can't be sent until it is here.
 
-Progress, whatever the hooks say: rays go only to the owner of the object they need next, where it
-is resident for good, only a PE that has it for good is asked for it, and a fetched object is pinned
+Progress, whatever the hooks say: rays go only where the object that they need next is resident for
+good, only a PE that has it for good is asked for it, and a fetched object is pinned
 for the rays that it makes ready. So every transfer makes at least one test, and stale loads can
 herd rays but not bounce them.
 """
@@ -22,7 +22,7 @@ herd rays but not bounce them.
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key, unlink
+from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key
 from simmpp.engine.arrays.records import NONE, SINGLY, Run
 from simmpp.engine.arrays.views import (
     exchanged,
@@ -37,13 +37,9 @@ from simmpp.engine.arrays.views import (
     unasked,
     unsent,
 )
-from simmpp.engine.pe.misses import (
-    drop_if_idle,
-    is_holder,
-    set_peer_sendable,
-    set_unasked,
-    withdraw,
-)
+from simmpp.engine.pe.candidates import withdraw
+from simmpp.engine.pe.misses import drop_if_idle, is_holder, set_unasked
+from simmpp.engine.pe.peers import known_load
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.record.counters import note_work
@@ -81,8 +77,12 @@ def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
     if view.nothing_else:
         n = _collect_peers(s, me, unsent(s), 2 * me, n)
     clock_ps = now_ps
+    if s.to_holders:
+        _put_least_loaded_first(s, n)
     for i in range(n):
         peer_row = sort_items(s)[i]
+        if s.to_holders and not _still_enough(s, view, peer_row):
+            continue
         show_destination(s, view, me, peer_row, clock_ps)
         may_go = consult(s.send, view)
         if may_go > 0:
@@ -94,6 +94,21 @@ def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
             other = peer_rows(s)[peer_row].key % s.processors
             clock_ps = send_rays(s, me, other, head, tail, n_rays, clock_ps)
     return clock_ps
+
+
+@kernel
+def _put_least_loaded_first(s: Run, n: int) -> None:
+    """Sort the first n peers of ``sort_items`` by known load, equal ones in ring order."""
+    for i in range(n):
+        sort_keys(s)[i] += (known_load(s, sort_items(s)[i]) + 1) * s.processors
+    sort_by_key(sort_keys(s), sort_items(s), n)
+
+
+@kernel
+def _still_enough(s: Run, view: View, peer_row: int) -> bool:
+    """Is ``send`` to be asked, after rays that could have gone here went elsewhere?"""
+    n = peer_rows(s)[peer_row].sendable
+    return n >= s.send_from or (n > 0 and view.nothing_else == 1)
 
 
 @kernel
@@ -112,27 +127,28 @@ def _collect_peers(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
 
 @kernel
 def _take_rays(s: Run, me: int, peer_row: int, enough: int) -> tuple[int, int, int]:
-    """Unfile sendable rays of one owner, of whole objects, until there are enough or none is left.
+    """Unfile rays that may go to a PE, of whole objects, until there are enough or none is left.
 
     Objects as they became sendable. Returns the first, the last and how many.
     """
+    other = peer_rows(s)[peer_row].key % s.processors
     head, tail, n = NONE, NONE, 0
-    miss_row = first(sendable(s), peer_row)
+    miss_row = first(sendable(s), me if s.to_holders else peer_row)
     while miss_row >= 0 and n < enough:
         # The successor is read first: the row may be given back.
         miss, successor = miss_rows(s)[miss_row], following(sendable(s), miss_row)
-        if head == NONE:
-            head = miss.first
-        else:
-            rays(s)[tail].next = miss.first
-        tail = miss.last
-        n += miss.n
-        miss.first, miss.n = NONE, 0
-        unlink(sendable(s), peer_row, miss_row)
-        set_unasked(s, me, miss_row, 0)
-        drop_if_idle(s, miss_row)
+        if not s.to_holders or is_holder(s, other, miss.key % s.n_objects):
+            if head == NONE:
+                head = miss.first
+            else:
+                rays(s)[tail].next = miss.first
+            tail = miss.last
+            n += miss.n
+            withdraw(s, me, miss_row)
+            miss.first, miss.n = NONE, 0
+            set_unasked(s, me, miss_row, 0)
+            drop_if_idle(s, miss_row)
         miss_row = successor
-    set_peer_sendable(s, me, peer_row, peer_rows(s)[peer_row].sendable - n)
     return head, tail, n
 
 

@@ -6,7 +6,8 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import append, find, first, unlink
 from simmpp.engine.arrays.records import Run
 from simmpp.engine.arrays.views import miss_rows, misses, object_bytes, pes, rays, recent
-from simmpp.engine.pe.misses import drop_if_idle, set_sendable
+from simmpp.engine.pe.candidates import set_sendable
+from simmpp.engine.pe.misses import drop_if_idle
 from simmpp.engine.pe.ready import make_ready
 
 

@@ -7,24 +7,21 @@ it counts the rays that wait, the requests in flight and the rays the object is 
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import Lists, add, append, find, link, remove, unlink
+from simmpp.engine.arrays.hashtable import add, find, link, remove
 from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
-    exchanged,
     miss_rows,
     misses,
     owners,
-    peer_rows,
-    peers,
     pes,
     rays,
     replica_objects,
     replica_offsets,
     resident,
-    sendable,
     unasked,
-    unsent,
 )
+from simmpp.engine.pe.candidates import relist, set_sendable
+from simmpp.engine.pe.peers import peer_of
 from simmpp.policy.view import LOADS
 
 
@@ -63,25 +60,6 @@ def _is_replica(s: Run, me: int, obj: int) -> bool:
         else:
             high = middle
     return low < end and replica_objects(s)[low] == obj
-
-
-@kernel
-def note_exchange(s: Run, me: int, peer_row: int) -> None:
-    """Rays or objects went from one to the other: loads are refreshed between them."""
-    if peer_rows(s)[peer_row].exchanged == 0:
-        peer_rows(s)[peer_row].exchanged = 1
-        append(exchanged(s), me, peer_row)
-
-
-@kernel
-def peer_of(s: Run, me: int, other: int) -> int:
-    """The row of what PE ``me`` knows of PE ``other``."""
-    key = me * s.processors + other
-    peer_row = find(peers(s), key)
-    if peer_row == NONE:
-        peer_row = add(peers(s), key)
-        peer_rows(s)[peer_row].load = NONE  # the rest is 0: rows of peers are never given back
-    return peer_row
 
 
 @kernel
@@ -134,50 +112,5 @@ def set_unasked(s: Run, me: int, miss_row: int, n: int) -> None:
     """Change the number of rays that no request covers, and the list that shows it."""
     miss = miss_rows(s)[miss_row]
     if s.asks:
-        _relist(unasked(s), me, miss_row, miss.unasked, n, s.ask_from)
+        relist(unasked(s), me, miss_row, miss.unasked, n, s.ask_from)
     miss.unasked = n
-
-
-@kernel
-def set_sendable(s: Run, me: int, miss_row: int, n_more: int) -> None:
-    """Waiting rays of an object become sendable; all of its rays before were, or none."""
-    if not s.sends:
-        return
-    miss = miss_rows(s)[miss_row]
-    if miss.n == n_more:
-        append(sendable(s), miss.peer, miss_row)
-    set_peer_sendable(s, me, miss.peer, peer_rows(s)[miss.peer].sendable + n_more)
-
-
-@kernel
-def withdraw(s: Run, me: int, miss_row: int) -> None:
-    """An object has been asked for: its waiting rays can't be sent any more."""
-    if not s.sends:
-        return
-    miss = miss_rows(s)[miss_row]
-    unlink(sendable(s), miss.peer, miss_row)
-    set_peer_sendable(s, me, miss.peer, peer_rows(s)[miss.peer].sendable - miss.n)
-
-
-@kernel
-def set_peer_sendable(s: Run, me: int, peer_row: int, n: int) -> None:
-    """Change the number of rays that may be sent to an owner, and the list that shows it."""
-    peer = peer_rows(s)[peer_row]
-    _relist(unsent(s), me, peer_row, peer.sendable, n, s.send_from)
-    peer.sendable = n
-
-
-@kernel
-def _relist(lists: Lists, me: int, row: int, before: int, after: int, enough: int) -> None:
-    """Keep ``row`` in the PE's list of those with some rays (2 me) or enough (2 me + 1).
-
-    ``enough`` is what the policy declares (``send_from``, ``ask_from``): below it its rule says no
-    as long as there is anything else to do. So at most dispatches only the second list is looked
-    at, and nothing is missed: a PE waits for a thousand objects, and few of them have enough.
-    """
-    if before > 0 and after > 0 and (before >= enough) == (after >= enough):
-        return
-    if before > 0:
-        unlink(lists, 2 * me + (1 if before >= enough else 0), row)
-    if after > 0:
-        append(lists, 2 * me + (1 if after >= enough else 0), row)

@@ -27,7 +27,7 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.costs import copy_ps
-from simmpp.engine.pe.misses import note_exchange, peer_of
+from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST

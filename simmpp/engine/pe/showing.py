@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, PACK, UNPACK, Row, Run
+from simmpp.engine.arrays.records import NONE, PACK, UNPACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     holder_offsets,
@@ -19,6 +19,7 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.machine.messages import OBJECT as OBJECT_MESSAGE
 from simmpp.machine.messages import RAYS, REQUEST
 from simmpp.machine.topology import hops
@@ -39,7 +40,7 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     view.load, view.other = pes(s)[me].load, other
     view.waiting, view.unasked = waiting, 0
     if s.send_reads & LOADS:
-        _show_load(s, view, peer, other, now_ps)
+        _show_load(s, view, peer_row, now_ps)
     if s.send_reads & ~LOADS == 0:
         return
     if s.send_reads & OBJECT:
@@ -65,7 +66,7 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int) -> None
     if s.ask_reads == 0:
         return
     if s.ask_reads & LOADS:
-        _show_load(s, view, peer_rows(s)[miss.peer], other, now_ps)
+        _show_load(s, view, miss.peer, now_ps)
     if s.ask_reads & OBJECT:
         view.object, view.owner, view.requests = obj, other, miss.requests
         view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
@@ -90,17 +91,10 @@ def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
 
 
 @kernel
-def _show_load(s: Run, view: View, peer: Row, other: int, now_ps: int) -> None:
+def _show_load(s: Run, view: View, peer_row: int, now_ps: int) -> None:
     """What this PE knows of the load of another, and how old that is."""
-    view.in_flight = peer.in_flight
-    if s.load_info == NO_INFO:
-        view.known_load, view.age_ps = NONE, now_ps
-    elif s.load_info == EXACT:
-        view.known_load, view.age_ps = pes(s)[other].settled_load, 0
-    elif peer.load == NONE:
-        view.known_load, view.age_ps = s.initial_load, now_ps
-    else:
-        view.known_load, view.age_ps = peer.load, now_ps - peer.heard_ps
+    view.in_flight = peer_rows(s)[peer_row].in_flight
+    view.known_load, view.age_ps = known_load(s, peer_row), age_ps(s, peer_row, now_ps)
 
 
 @kernel

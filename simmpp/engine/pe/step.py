@@ -26,7 +26,8 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
-from simmpp.engine.pe.misses import file_ray, is_in_memory, note_exchange, peer_of
+from simmpp.engine.pe.misses import file_ray, is_in_memory
+from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work

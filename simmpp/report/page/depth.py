@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from simmpp.common.files import Row
 from simmpp.methods.columns import NUMBERS, PACKED
-from simmpp.plot.plotly_panels import N_COLOURS, PART_COLOURS
+from simmpp.plot.curves import PART_COLOURS
+from simmpp.plot.plotly_panels import N_COLOURS
 from simmpp.report.page.figures.figure import styles_of
+from simmpp.report.page.limits import PointLimits
 from simmpp.report.page.measures import ALL
 from simmpp.run import words
-from simmpp.sweeps.profits import MEASURES
+from simmpp.sweeps.profits import MEASURES, STATISTICS
 from simmpp.sweeps.winners.points import ACCOUNTS, KEY_AXES, KINDS, Points
 
 MOST_EXACT = 2**53
 """Larger integers are no numbers of JavaScript; they travel as texts."""
-GAINS = (*MEASURES, "speedup", "efficiency")
+GAINS = (*(m + s for m in MEASURES for s in STATISTICS), "speedup", "efficiency", "n")
 
 
-def depth_of(points: Points) -> dict[str, Any]:
+def depth_of(points: Points, limits: PointLimits) -> dict[str, Any]:
     """Columns of points, in their order, and of rows, each with the number of its point."""
     profits = points.profits
     titles = list(styles_of(profits))
@@ -48,9 +50,10 @@ def depth_of(points: Points) -> dict[str, Any]:
             "place": points.groups,
             "name": [_name(points, row) for row in profits],
             "policy": [titles.index(row["policy"]) for row in profits],
-            **{name: cells for gain in GAINS for name, cells in _gains(points, gain)},
-            "n": _column(profits, "n"),
+            **{name: _column(profits, name) for name in GAINS},
         },
+        "spreads": {name: _spreads(points, name) for name in MEASURES},
+        "limits": [limits.told(number) for number in range(len(profits))],
         "rows": {
             "point": [number for number, _ in rows],
             **{
@@ -61,13 +64,12 @@ def depth_of(points: Points) -> dict[str, Any]:
     }
 
 
-def _gains(points: Points, name: str) -> Iterator[tuple[str, list[Any]]]:
-    """Columns of a measure's mean and interval, the same as curves show."""
-    spreads = [ALL[name].spread(points, number) for number in range(len(points.profits))]
-    unknown = [(row[name], "", "") for row in points.profits]  # such as infinite
-    for place, end in enumerate(("", "_low", "_high")):
-        cells = [(of or rest)[place] for of, rest in zip(spreads, unknown, strict=True)]
-        yield name + end, list(map(_exact, cells))
+def _spreads(points: Points, name: str) -> list[list[Any]]:
+    """Mean and interval of a measure of each point, as curves show them."""
+    spreads = (ALL[name].spread(points, number) for number in range(len(points.profits)))
+    unknown = ([row[name], "", ""] for row in points.profits)  # such as infinite
+    found = (of or rest for of, rest in zip(spreads, unknown, strict=True))
+    return [[_exact(end) for end in of] for of in found]
 
 
 def _place(points: Points, number: int) -> str:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
-from typing import Any
 
 from simmpp.common.units import counted
 from simmpp.report.page.folder import Folder, number_of
+from simmpp.report.page.settings import settings_of
 from simmpp.run import words
-
-UNSAID = ("sweep", "check", "seeds", "policy")
-"""Keys of a configuration that the figures show."""
 
 
 def facts(folder: Folder) -> list[str]:
@@ -30,26 +26,7 @@ def facts(folder: Folder) -> list[str]:
 
 def origin(folder: Folder) -> list[tuple[str, str]]:
     """Names and values, as text."""
-    return [*_settings(folder), *_machines(folder), *_versions(folder), *_times(folder)]
-
-
-def _settings(folder: Folder) -> Iterator[tuple[str, str]]:
-    config = folder.record.get("config")
-    if isinstance(config, dict):
-        for key, value in config.items():
-            if key not in UNSAID and value not in (None, {}, []):
-                yield key, _text(value)
-    if overrides := folder.record.get("set"):
-        yield "set", _text(overrides)
-
-
-def _text(value: Any) -> str:
-    """Short and readable: mappings as ``key value``, without what is not given."""
-    if isinstance(value, dict):
-        return ", ".join(f"{k}: {_text(v)}" for k, v in value.items() if v not in (None, {}))
-    if isinstance(value, list):
-        return ", ".join(map(_text, value))
-    return value if isinstance(value, str) else json.dumps(value)
+    return [*settings_of(folder.record), *_machines(folder), *_versions(folder), *_times(folder)]
 
 
 def _machines(folder: Folder) -> Iterator[tuple[str, str]]:

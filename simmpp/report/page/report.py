@@ -15,15 +15,22 @@ from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.figure import Figure, figure_data
-from simmpp.report.page.figures.groups import FIGURE_GROUPS, FigureGroup
+from simmpp.report.page.figures.groups import FIGURE_GROUPS, LIMITS_ID, FigureGroup
 from simmpp.report.page.findings import sentences, wins
 from simmpp.report.page.folder import Folder, read_folder
+from simmpp.report.page.limits import (
+    PointLimits,
+    limit_sentences,
+    limit_table,
+    limits_of_points,
+)
 from simmpp.report.page.origin import facts, origin
 from simmpp.report.page.standing import standing_of, warnings_of
 from simmpp.report.page.template import rendered
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.winners.answer import Sentence
 from simmpp.sweeps.winners.points import Points, points_of
 
 PAGE = "report.html"
@@ -36,9 +43,14 @@ class Report:
     """A folder's rows, the points they make, and the figures of these."""
 
     folder: Folder
-    points: Points
+    limits: PointLimits
     groups: Mapping[FigureGroup, Sequence[Figure]]
     """Those of which there are figures."""
+
+    @property
+    def points(self) -> Points:
+        """Those of the rows."""
+        return self.limits.points
 
     @property
     def figures(self) -> list[Figure]:
@@ -51,13 +63,14 @@ def report_of(folder: Folder) -> Report:
     points = points_of(
         folder.rows, folder.further, folder.profits, folder.labels, folder.confidence
     )
+    limits = limits_of_points(folder, points)
     has_runs = any(points.runs)
     figures = {
-        group: list(group.figures(folder, points))
+        group: list(group.figures(folder, limits))
         for group in FIGURE_GROUPS
         if has_runs or not group.of_points
     }
-    return Report(folder, points, {group: of for group, of in figures.items() if of})
+    return Report(folder, limits, {group: of for group, of in figures.items() if of})
 
 
 def write_page(report: Report, *, is_running: bool = False, stills: Collection[str] = ()) -> Path:
@@ -101,7 +114,9 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "facts": facts(folder),
         "live": f"running: {standing_of(folder).progress}" if is_running else "",
         "warnings": warnings_of(folder, is_followed=is_running),
-        "sentences": sentences(points) if folder.rows or not folder.bench else [],
+        "sentences": _sentences(report),
+        "limits": limit_table(report.limits),
+        "limits_of": LIMITS_ID,
         "wins": wins(points),
         "along": {"policy": "", "fraction": "x"}.get(along, along),
         "claims": folder.claims,
@@ -115,6 +130,12 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "made": "Made by simmpp from the rows in this folder; nothing is loaded from anywhere.",
         "data": _data(report, is_running),
     }
+
+
+def _sentences(report: Report) -> list[Sentence]:
+    if report.folder.bench and not report.folder.rows:
+        return []
+    return [*sentences(report.points), *limit_sentences(report.limits)]
 
 
 def _verdicts(folder: Folder) -> str:
@@ -140,7 +161,7 @@ def _data(report: Report, is_running: bool) -> dict[str, Any]:
     """What the scripts of the page read."""
     return {
         "figures": {figure.stem: figure_data(figure) for figure in report.figures},
-        "depth": depth_of(report.points),
+        "depth": depth_of(report.points, report.limits),
         "first": _first(report.points),
         "live": is_running,
     }

@@ -17,7 +17,7 @@ WIDE = 0.5
 
 def label(name: str, cell: Any) -> str:
     """What stands at the tick of a value."""
-    return words.policy(cell) if name == "policy" else words.value(name, cell).removesuffix(" %")
+    return words.policy(cell) if name == "policy" else words.bare(name, cell)
 
 
 def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
@@ -35,7 +35,8 @@ def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
     if name == "processors":
         ticks = (*places.values(),)
         return Scale("processing elements (PEs)", is_log=True, ticks=ticks), places
-    return Scale(name, is_log=is_log(values)), places
+    unit = words.unit_of(name)
+    return Scale(f"{name} ({unit})" if unit else name, is_log=is_log(values)), places
 
 
 def is_log(values: Iterable[float]) -> bool:

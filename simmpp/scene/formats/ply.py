@@ -58,14 +58,22 @@ def _polygons(elements: Mapping[str, Columns], body: Body, source: Source) -> Po
         lists.append(_corners("face", elements, source))
     if "tristrips" in elements:
         lists.append(_triangles(_corners("tristrips", elements, source)))
-    starts = np.concatenate([NONE, *(column.starts for column in lists)])
+    faces = lists[0] if len(lists) == 1 else _one_after_the_other(lists)
     return Polygons(
         positions.astype(np.float64),
-        np.concatenate([NONE, *(column.sizes for column in lists)]),
-        np.concatenate([NONE, *(column.values.astype(np.int64) for column in lists)]),
+        faces.sizes,
+        faces.values,
         lambda i: body.line(vertex["x"].starts[i]),
-        lambda i: body.line(starts[i]),
+        lambda i: body.line(faces.starts[i]),
     )
+
+
+def _one_after_the_other(lists: list[Column]) -> Column:
+    starts, sizes = (
+        np.concatenate([NONE, *(np.asarray(column[field]) for column in lists)]) for field in (1, 2)
+    )
+    values = [column.values.astype(np.int64) for column in lists]
+    return Column(True, starts, sizes, np.concatenate([NONE, *values]))
 
 
 def _corners(name: str, elements: Mapping[str, Columns], source: Source) -> Column:

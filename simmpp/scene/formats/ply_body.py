@@ -18,12 +18,16 @@ Kind = np.dtype[Any]
 ROWS = {"vertex": "vertices", "face": "faces"}
 
 
+Starts = range | NDArray[np.int64]
+"""Positions; a range where all rows are alike, which then are not looked at one by one."""
+
+
 class Column(NamedTuple):
     """A property of all rows."""
 
     is_list: bool
-    starts: Indices
-    """(n,) the position of its first number in each row."""
+    starts: Starts
+    """The position of its first number in each of n rows."""
     sizes: Indices
     """(n,) the lengths of lists; 1 for numbers."""
     values: NDArray[Any]
@@ -47,6 +51,9 @@ class Body(Protocol):
 
     def take(self, at: Indices, kind: Kind) -> NDArray[Any]:
         """The numbers at these positions (n,)."""
+
+    def rows(self, starts: range, size: int, kind: Kind) -> NDArray[Any]:
+        """So many numbers from each of these positions on, (n, size)."""
 
     def is_blank(self, at: int) -> bool:
         """Whether nothing follows from a position on."""
@@ -79,6 +86,10 @@ class _Text:
             return integers(words, self.source, lambda i: self.line(at[i]))
         return floats(words, self.source, lambda i: self.line(at[i])).astype(kind)
 
+    def rows(self, starts: range, size: int, kind: Kind) -> NDArray[Any]:
+        at = np.array(starts)[:, None] + np.arange(size)
+        return self.take(at.ravel(), kind).reshape(at.shape)
+
     def is_blank(self, at: int) -> bool:
         return at == self.n
 
@@ -90,7 +101,7 @@ class _Binary:
     """A body of bytes."""
 
     def __init__(self, data: bytes, header: Header) -> None:
-        self.bytes = data[header.n_bytes :]
+        self.bytes = memoryview(data)[header.n_bytes :]
         self.array = np.frombuffer(self.bytes, np.uint8)
         self.n = len(self.bytes)
         self.order: Literal["big", "little"] = "big" if header.byte_order == ">" else "little"
@@ -103,14 +114,18 @@ class _Binary:
         return int.from_bytes(number, self.order, signed=kind.kind == "i")
 
     def is_constant(self, at: range, kind: Kind) -> bool:
-        numbers = self.take(np.arange(at.start, at.stop, at.step), kind)
+        numbers = self.rows(at, 1, kind)
         return bool((numbers == numbers[0]).all())
 
     def take(self, at: Indices, kind: Kind) -> NDArray[Any]:
         return self.array[at[:, None] + np.arange(kind.itemsize)].view(kind)[:, 0]
 
+    def rows(self, starts: range, size: int, kind: Kind) -> NDArray[Any]:
+        strides = starts.step, kind.itemsize
+        return np.ndarray((len(starts), size), kind, self.bytes, starts.start, strides)
+
     def is_blank(self, at: int) -> bool:
-        return not self.bytes[at:].strip(b"\0 \t\r\n")
+        return not bytes(self.bytes[at:]).strip(b"\0 \t\r\n")
 
     def line(self, _at: int) -> None:
         return None
@@ -131,28 +146,36 @@ def read_element(
     columns = {}
     for (name, kind, count), (starts, sizes) in zip(element.properties, places, strict=True):
         if name in wanted:
-            within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-            at = np.repeat(starts, sizes) + body.width(kind) * within
-            columns[name] = Column(count is not None, starts, sizes, body.take(at, kind))
+            values = _values(body, kind, starts, sizes)
+            columns[name] = Column(count is not None, starts, sizes, values)
     return columns, end
 
 
-Places = list[tuple[Indices, Indices]]
+def _values(body: Body, kind: Kind, starts: Starts, sizes: Indices) -> NDArray[Any]:
+    if isinstance(starts, range):
+        return body.rows(starts, int(sizes[0]), kind).ravel()
+    within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    return body.take(np.repeat(starts, sizes) + body.width(kind) * within, kind)
+
+
+Places = list[tuple[Starts, Indices]]
 """Of each property where it begins in each row, and how many numbers it has there."""
 
 
 def _places(body: Body, element: Element, begin: int, source: Source) -> tuple[Places, int]:
     n = element.n_rows
     if n > 1:  # mostly, all rows have lists as long as those of the first
-        first, end = _walked(body, element, begin, 1, source)
-        step = end - begin
-        if begin + n * step <= body.n and all(
-            body.is_constant(range(start - body.width(kind), begin + n * step, step), kind)
+        first, after = _walked(body, element, begin, 1, source)
+        step = after - begin
+        end = begin + n * step
+        if end <= body.n and all(
+            body.is_constant(range(start - body.width(kind), end, step), kind)
             for (_, _, kind), ((start,), _) in zip(element.properties, first, strict=True)
             if kind is not None
         ):
-            rows = step * np.arange(n)
-            return [(start + rows, np.repeat(size, n)) for start, size in first], begin + n * step
+            return [
+                (range(start, end, step), np.broadcast_to(size, n)) for (start,), size in first
+            ], end
     return _walked(body, element, begin, n, source)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from simmpp.scene.cut import Indices
 from simmpp.scene.formats.text import Line, Source
 from simmpp.scene.nff_words import LARGEST
+from simmpp.scene.node import are_usable
 from simmpp.scene.scene import Floats
 from simmpp.scene.tiling import tiled
 
@@ -21,30 +22,31 @@ class Polygons(NamedTuple):
     sizes: Indices
     """(m,) int64: how many vertices each polygon has; below 3 it is a line or a point, left out."""
     corners: Indices
-    """(sum of sizes,) int64 into ``vertices``, counted from 0."""
+    """(sum of sizes,) of any whole numbers, into ``vertices``, counted from 0."""
     vertex_line: Line
     polygon_line: Line
 
 
 def triangulated(polygons: Polygons, source: Source) -> tuple[Indices, Indices]:
-    """Triangles (k, 3) int64 in the order of their polygons, and (k,) the polygon of each.
+    """Triangles (k, 3) int32 in the order of their polygons, and (k,) the polygon of each.
 
     Raises SceneError for a polygon that names no vertex, or one that is not finite.
     """
     _check(polygons, source)
-    return tiled(polygons.vertices, polygons.sizes, polygons.corners)
+    return tiled(polygons.vertices, polygons.sizes, polygons.corners.astype(np.int32))
 
 
 def _check(polygons: Polygons, source: Source) -> None:
     vertices, corners, n = polygons.vertices, polygons.corners, len(polygons.vertices)
-    outside = (corners < 0) | (corners >= n)
-    if outside.any():
-        corner = int(outside.argmax())
+    if len(corners) and not 0 <= corners.min() <= corners.max() < n:
+        corner = int(((corners < 0) | (corners >= n)).argmax())
         polygon = int(np.searchsorted(np.cumsum(polygons.sizes), corner, side="right"))
         problem = f"face {polygon + 1} names vertex {corners[corner]}, expected 0 to {n - 1}"
         raise source.error(problem, polygons.polygon_line(polygon))
+    if are_usable(vertices):
+        return
     wild = ~np.all(np.abs(vertices) <= LARGEST, axis=1)
-    used = corners[wild[corners]] if wild.any() else corners[:0]
+    used = corners[wild[corners]]
     if len(used):
         vertex = int(used[0])
         numbers = ", ".join(f"{x:g}" for x in vertices[vertex])

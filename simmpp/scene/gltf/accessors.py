@@ -41,7 +41,7 @@ class Arrays:
         return np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
 
     def indices(self, index: int) -> Indices:
-        """An accessor of unsigned integers, (count,) int64."""
+        """An accessor of unsigned integers, (count,) of the type that is stored."""
         accessor = self._accessor(index, ("SCALAR",))
         if accessor.component_type not in UNSIGNED:
             raise SceneError(f"accessors[{index}]: its indices are not unsigned integers")
@@ -49,7 +49,7 @@ class Arrays:
         reserved = np.iinfo(stored.dtype).max
         if np.any(stored == reserved):
             raise SceneError(f"accessors[{index}]: the index {reserved} stands for no vertex")
-        return stored.astype(np.int64)
+        return stored
 
     def has_data(self, index: int) -> bool:
         """Whether the file holds numbers for an accessor; without, they are all 0."""

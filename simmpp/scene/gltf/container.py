@@ -20,7 +20,7 @@ MAGIC = b"glTF"
 JSON, BIN = b"JSON", b"BIN\0"
 
 
-def split(data: bytes, *, binary: bool) -> tuple[bytes, bytes | None]:
+def split(data: bytes, *, binary: bool) -> tuple[bytes, memoryview | None]:
     """The JSON of a file, and the bytes that follow it in a GLB.
 
     A file that begins as a GLB is one; one that is ``binary`` by its name has to.
@@ -28,14 +28,14 @@ def split(data: bytes, *, binary: bool) -> tuple[bytes, bytes | None]:
     if not binary and not data.startswith(MAGIC):
         return data, None
     chunks = _chunks(data)
-    (kind, text), *others = chunks or [(b"", b"")]
+    (kind, text), *others = chunks or [(b"", memoryview(b""))]
     if kind != JSON:
         raise _unreadable("its first chunk is not its JSON")
-    return text, next((body for kind, body in others[:1] if kind == BIN), None)
+    return bytes(text), next((body for kind, body in others[:1] if kind == BIN), None)
 
 
-def _chunks(data: bytes) -> list[tuple[bytes, bytes]]:
-    """Type and content of each chunk of a GLB."""
+def _chunks(data: bytes) -> list[tuple[bytes, memoryview]]:
+    """Type and content of each chunk of a GLB; nothing is copied."""
     if not data.startswith(MAGIC) or len(data) < 12:
         raise _unreadable("expected 'glTF' and two numbers at its beginning")
     version, length = struct.unpack_from("<II", data, 4)
@@ -49,7 +49,7 @@ def _chunks(data: bytes) -> list[tuple[bytes, bytes]]:
         size = int.from_bytes(head[:4], "little")
         if len(head) < 8 or size > length - body:
             raise _unreadable(f"the chunk at byte {at} goes beyond the end of the file")
-        chunks.append((head[4:], data[body : body + size]))
+        chunks.append((head[4:], memoryview(data)[body : body + size]))
         at = body + size
     return chunks
 
@@ -61,9 +61,9 @@ def _unreadable(reason: str) -> SceneError:
 class Buffers:
     """The buffers of a file; each is read when something needs it."""
 
-    def __init__(self, document: Document, chunk: bytes | None, folder: Path) -> None:
+    def __init__(self, document: Document, chunk: memoryview | None, folder: Path) -> None:
         self._document, self._chunk, self._folder = document, chunk, folder
-        self._read: dict[int, bytes] = {}
+        self._read: dict[int, bytes | memoryview] = {}
 
     def view(self, index: int) -> tuple[memoryview, int | None]:
         """The bytes of a buffer view, and those from one element to the next if it says so."""
@@ -75,7 +75,7 @@ class Buffers:
             raise SceneError(f"{problem}, which has {len(whole)}")
         return memoryview(whole)[view.byte_offset : end], view.byte_stride
 
-    def _buffer(self, index: int) -> bytes:
+    def _buffer(self, index: int) -> bytes | memoryview:
         if index not in self._read:
             buffer = item(self._document.buffers, index, "buffers")
             content = self._content(index, buffer.uri, buffer.byte_length)
@@ -85,7 +85,7 @@ class Buffers:
             self._read[index] = content[: buffer.byte_length]
         return self._read[index]
 
-    def _content(self, index: int, uri: str | None, length: int) -> bytes:
+    def _content(self, index: int, uri: str | None, length: int) -> bytes | memoryview:
         name = f"buffers[{index}]"
         if uri is None:
             if index > 0 or self._chunk is None:

@@ -145,6 +145,7 @@ def _faces(arrays: Arrays, primitive: Primitive, vertices: int) -> Indices:
         if corners.max() >= vertices:
             problem = f"a triangle names vertex {corners.max()}"
             raise SceneError(f"{problem}, but there are {vertices} vertices")
+    corners = corners.astype(np.int32)
     if len(corners) < 3 or (primitive.mode == TRIANGLES and len(corners) % 3):
         raise SceneError(f"{len(corners)} corners are not whole triangles")
     if primitive.mode == TRIANGLES:

@@ -41,6 +41,7 @@ POLICY = Policy(
     send=send,
     ask=ask,
     batch="batch",  # send is asked when that many rays wait for one PE, or with nothing else to do
+    like="concurrent",  # packs messages as that does
     parameters={{"patience": 8}},
 )
 '''

@@ -108,12 +108,12 @@ def _absent(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
 
 def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
     """The replicated scene: it has more memory than the dataflows, unless these hold all too."""
-    found = [contest for contest in contests if contest.ceiling is not None]
+    found = [contest for contest in contests if contest.ceiling]
     if not found:
         return
     held = [_held(points, contest.best) for contest in found]
     scarce = [share for share in held if share < 1]
-    ratios = [1 / contest.ceiling for contest in found if contest.ceiling]
+    ratios = [1 / (contest.ceiling or 1) for contest in found]
     faster = sum(ratio > 1 for ratio in ratios)
     text = f"the picture takes {words.span(ratios)} times as long as with the fastest dataflow"
     if len(found) > 1 and faster:

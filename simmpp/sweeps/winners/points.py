@@ -152,14 +152,6 @@ class Points:
         rows = (r for n in place for r in self.runs[n])
         return str(profits), *((r["seed"], r["makespan_ps"], r["messages"]) for r in rows)
 
-    def shares(self, number: int) -> dict[str, float]:
-        """Shares of all PEs' time over all seeds, by account; none where a row does not know."""
-        if not self._knows(number, ACCOUNTS.values()):
-            return {}
-        sums = {name: sum(row[c] for row in self.runs[number]) for name, c in ACCOUNTS.items()}
-        total = sum(sums.values()) or 1
-        return {name: value / total for name, value in sums.items()}
-
     def messages(self, number: int) -> dict[str, float]:
         """Messages by kind, means over seeds; none where a row does not know."""
         if not self._knows(number, KINDS.values()):

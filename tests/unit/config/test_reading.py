@@ -457,3 +457,17 @@ def test_the_schema_names_no_default_that_is_another() -> None:
     asked = definitions["PolicyParameters"]["properties"]["ask_at_least"]
     assert pixels.get("default") in (None, config.settings.placement.pixels)
     assert asked.get("default") in (None, config.settings.policy[0].ask_at_least)
+
+
+def test_a_policy_may_be_set_as_another(tmp_path: Path) -> None:
+    assert of("mixed", policy="holders").settings.policy[0].packing == "all"
+    assert of("plain", policy="holders").settings.policy[0].packing == "none"
+    text = "from simmpp.policy import Policy\nPOLICY = Policy('own', {hooks}, like='concurrent')\n"
+    for hooks, packing in (
+        ("send=lambda v: 1, ask=lambda v: 1", "all"),
+        ("send=lambda v: 1", "none"),
+    ):
+        path = tmp_path / "own.py"
+        path.write_text(text.replace("{hooks}", hooks))
+        (policy,) = of("mixed", policy={"file": str(path)}).settings.policy
+        assert (policy.packing, policy.ask_at_least) == (packing, 64)

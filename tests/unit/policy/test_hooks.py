@@ -22,6 +22,7 @@ from simmpp.policy.record import VIEW
 from simmpp.policy.view import GROUPS, LOADS, NUMBERS, OBJECT, RANDOM, SELF, WAY, View
 
 MIN_LOAD = 2
+REST = {"min_load": MIN_LOAD, "in_flight": 1}
 NAMES = ("load", "waiting", "known_load")
 SEEN = [
     dict(zip(NAMES, values, strict=True))
@@ -32,18 +33,20 @@ Answer = Callable[[Any], int]
 SENDS: dict[str, Answer] = {
     "ray": lambda v: int(v.waiting),
     "concurrent": lambda v: int(v.waiting) * (v.load > MIN_LOAD and v.load > v.known_load),
+    "holders": lambda v: int(max(0, v.load - v.known_load - 1) // 2) * (v.load > MIN_LOAD),
 }
-ASKS: dict[str, Answer] = {"object": lambda v: 1, "concurrent": lambda v: 1}
+ASKS: dict[str, Answer] = dict.fromkeys(("object", "concurrent", "holders"), lambda v: 1)
 COUNTS = {
     "object": (1, 1),
     "ray": ("batch", 1),
     "concurrent": ("batch", "ask_at_least"),
     "replicated": (1, 1),
+    "holders": ("batch", "ask_at_least"),
 }
 
 
 def view(**seen: int) -> View:
-    return cast(View, SimpleNamespace(**seen, min_load=MIN_LOAD))
+    return cast(View, SimpleNamespace(**seen, **REST))
 
 
 def compiled(hook: Any, names: tuple[str, ...] = (), **shown: Any) -> int:
@@ -64,7 +67,7 @@ def test_hooks_say_what_their_names_promise(name: str) -> None:
             expected = answer[name](view(**seen))
             assert function is not None
             assert function(view(**seen)) == expected, seen
-            assert compiled(function, **seen, min_load=MIN_LOAD) == expected, seen
+            assert compiled(function, **seen, **REST) == expected, seen
     assert policy.counts == COUNTS[name]
 
 

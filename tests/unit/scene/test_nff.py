@@ -1,6 +1,7 @@
 """Reading and writing NFF: grammar, round trips, and every way to be wrong."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simmpp.common.errors import SceneError
+from simmpp.scene import nff_objects
 from simmpp.scene.nff import read_nff, write_nff
 from simmpp.scene.scene import (
     Camera,
@@ -320,3 +322,43 @@ def test_a_view_may_be_of_any_size(size: float) -> None:
 
 def test_a_scene_may_be_empty() -> None:
     assert read_nff(VIEW, name="empty", where="empty.nff").objects == ()
+
+
+SPELLED = st.sampled_from(["0", "1", "-1", "2.5", "1e3", "3", "4", "nan", "1e31", "x", "s", "p"])
+HEADS = st.sampled_from([("s", 4), ("c", 8), ("p 3", 9), ("p 4", 12), ("pp 3", 18), ("f", 8)])
+
+
+@st.composite
+def runs_of_objects(draw: Any) -> str:
+    """Runs of objects that are spelled alike, most of them right."""
+    words = ["v from 9 9 9 at 0 0 0 up 0 0 1 angle 45"]
+    for head, n in draw(st.lists(HEADS, max_size=4)):
+        for k in range(draw(st.integers(1, 5))):
+            words += [head, *(f"{(i * 7 + k) % 11 / 8 + 0.125}" for i in range(n))]
+    text = " ".join(words).split(" ")
+    for at in draw(st.lists(st.integers(0, len(text) - 1), max_size=2)):
+        text[at] = draw(SPELLED)
+    return "\n".join(text)
+
+
+def outcome(text: str) -> tuple[str, str]:
+    try:
+        scene = read_nff(text, name="a", where="a.nff")
+    except SceneError as error:
+        return "refused", str(error)
+    return "read", write_nff(scene)
+
+
+@given(runs_of_objects())
+def test_runs_are_read_as_their_objects_are_one_by_one(text: str) -> None:
+    together = outcome(text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(nff_objects, "_count", lambda *_: 0)
+        assert outcome(text) == together
+
+
+def test_a_mistake_late_in_a_long_run_is_found_at_its_line() -> None:
+    text = "v from 9 9 9 at 0 0 0 up 0 0 1 angle 45\n" + "s 0 0 0 1\n" * 5000
+    bad = text.replace("s 0 0 0 1\n", "s 0 0 0 ?\n", 1)
+    assert outcome(text[: len(text) - 2] + "?")[1].startswith("a.nff:5001:")
+    assert outcome(bad)[1].startswith("a.nff:2:")

@@ -31,7 +31,7 @@
     return low === high ? low : `${format(mean(number, column))} (${low} to ${high})`;
   };
   const profit = (number, measure) => {
-    const [value, low, high] = ["", "_low", "_high"].map((end) => points[measure + end][number]);
+    const [value, low, high] = depth.spreads[measure][number];
     return low === "" || short(low) === short(high) ? short(value) : `${short(value)} (${short(low)} to ${short(high)})`;
   };
   const count = (value) => Math.round(value).toLocaleString("en-US");
@@ -100,6 +100,7 @@
     policy.replaceChildren(...numbers.map((n) => made("option", { value: n }, depth.policies[points.policy[n]])));
     policy.value = String(number);
     find("point-title").textContent = titled(number);
+    find("point-limits").textContent = depth.limits[number];
     comparison(numbers, number);
     stacked("point-accounts", numbers, shares(numbers), "Shares of the time of all PEs");
     stacked("point-messages", numbers, kinds(numbers), "Messages by kind");

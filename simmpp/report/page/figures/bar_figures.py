@@ -1,4 +1,4 @@
-"""What PEs spend their time with and what they send, for each point of a sweep."""
+"""What the makespan consists of and what PEs send, for each point of a sweep."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from simmpp.plot.curves import PERCENT, Bars, Scale
 from simmpp.report.page import scales
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figures.figure import Figure, styles_of
+from simmpp.report.page.limits import PointLimits
 from simmpp.run import words
 from simmpp.sweeps.winners.points import Points
 
@@ -16,15 +17,16 @@ BAR_HEADROOM = 1.02
 """Of a panel above its highest bar, as a factor."""
 
 
-def bar_figures(points: Points) -> Iterator[Figure]:
-    """Accounts and messages along the best axis, one panel for each policy."""
+def bar_figures(limits: PointLimits) -> Iterator[Figure]:
+    """Parts of the makespan and messages along the best axis, one panel for each policy."""
+    points = limits.points
     yield _figure(
         points,
         ACCOUNTS_STEM,
-        "What PEs spend their time with",
-        "shares of the time of all PEs, all seeds together",
-        "share of time (%)",
-        lambda number: {k: v * PERCENT for k, v in points.shares(number).items()},
+        "What the makespan consists of",
+        "means over PEs and seeds; compute is the bound, which no dataflow changes",
+        "share of the makespan (%)",
+        lambda number: {k: v * PERCENT for k, v in limits.shares(number).items()},
     )
     yield _figure(
         points,

@@ -9,9 +9,18 @@ from simmpp.report.page.figures import accuracy, bar_figures, paper, profit_figu
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
-from simmpp.sweeps.winners.points import Points
+from simmpp.report.page.limits import PointLimits
 
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
+LIMITS_ID = "accounts"
+LIMITS = (
+    "The makespan in parts that add up to it. Startups: what messages cost their two PEs whatever "
+    "their size. Copying: packing and unpacking by the byte, and probes. One hot PE: how much "
+    "longer the busiest PE works than the next. Imbalance: how much longer that one works than the "
+    "mean. Latency and bandwidth: when even the busiest PE waits, divided as flights of messages "
+    "are. Rows of sweeps know these four as waiting; simmpp run --out tells them apart. If a part "
+    "were gone, the makespan would be shorter by that at most."
+)
 
 
 @dataclass(frozen=True)
@@ -23,20 +32,23 @@ class FigureGroup:
     text: str
     stems: tuple[str, ...]
     """Beginnings of the stems of its figures' files: these are no pictures that others left."""
-    figures: Callable[[Folder, Points], Iterable[Figure]]
+    figures: Callable[[Folder, PointLimits], Iterable[Figure]]
     of_points: bool = True
     """Not asked for figures where no point has rows."""
 
 
 FIGURE_GROUPS = (
-    FigureGroup("paper", "The paper's figures", CLICKING, paper.STEMS, paper.paper_figures),
     FigureGroup(
-        *("curves", "Curves", CLICKING, profit_figures.STEMS),
-        lambda _, points: profit_figures.profit_figures(ProfitData(points)),
+        *("paper", "The paper's figures", CLICKING, paper.STEMS),
+        lambda folder, limits: paper.paper_figures(folder, limits.points),
     ),
     FigureGroup(
-        *("accounts", "Time and messages", "", bar_figures.STEMS),
-        lambda _, points: bar_figures.bar_figures(points),
+        *("curves", "Curves", CLICKING, profit_figures.STEMS),
+        lambda _, limits: profit_figures.profit_figures(ProfitData(limits.points)),
+    ),
+    FigureGroup(
+        *(LIMITS_ID, "What limits it", LIMITS, bar_figures.STEMS),
+        lambda _, limits: bar_figures.bar_figures(limits),
     ),
     FigureGroup(
         *("accuracy", "Run time against error", "", (accuracy.STEM,)),

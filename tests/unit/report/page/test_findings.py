@@ -49,3 +49,20 @@ def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
 )
 def test_spans(values: tuple[float, ...], text: str) -> None:
     assert words.span(values) == text
+
+
+@pytest.mark.parametrize(
+    ("name", "cell", "text"),
+    [
+        ("fraction", 0.05, "5 %"),
+        ("processors", 64, "64"),
+        ("scene", "mountain:5", "mountain:5"),
+        ("machine.quantum", 16, "16 tests"),
+        ("machine.latency", "5 us", "5 us"),
+        ("memory.transient", 3, "3"),  # objects, or a share
+        ("point", 2, "2"),
+        ("fraction", "", "none"),
+    ],
+)
+def test_values_have_units(name: str, cell: object, text: str) -> None:
+    assert words.value(name, cell) == text

@@ -18,11 +18,12 @@ from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.paper import paper_figures
 from simmpp.report.page.folder import Folder, read_folder
+from simmpp.report.page.limits import PointLimits, limits_of_points
 from simmpp.report.page.report import report_of, write_page
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.figures import FIGURES
 from simmpp.sweeps.profits import profit_columns, profit_rows
-from simmpp.sweeps.winners.points import points_of
+from simmpp.sweeps.winners.points import Points, points_of
 
 NEBEL98 = Path(__file__).parents[4] / "experiments" / "nebel98" / "plain"
 HOSTILE = '</script><script>document.title="broken"</script>" \' & {{ 7 * 7 }} <!--'
@@ -65,6 +66,10 @@ def page_of(folder: Path, **options: Any) -> Page:
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Page:
     rows = sweep(fraction=[0.1, 0.5, 1.0], processors=[8, 64])
     return page_of(written(tmp_path_factory.mktemp("plain"), [*rows, failed("late", 0)]))
+
+
+def depth_in(points: Points) -> dict[str, Any]:
+    return depth_of(points, PointLimits(points, {}))
 
 
 def test_a_page_loads_nothing(plain: Page) -> None:
@@ -114,7 +119,7 @@ def test_labels_break_nothing(plain: Page, tmp_path: Path) -> None:
 def test_every_integer_of_every_row_is_in_the_page() -> None:
     rows = [*sweep(fraction=[0.1, 1.0]), failed("ray", 7)]
     points = points_of(rows, ())
-    depth = depth_of(points)
+    depth = depth_in(points)
     found = []
     for n, number in enumerate(depth["rows"]["point"]):
         title = points.profits[number]["policy"]
@@ -130,7 +135,7 @@ def test_every_integer_of_every_row_is_in_the_page() -> None:
 
 
 def test_integers_beyond_those_of_javascript_keep_their_digits() -> None:
-    depth = depth_of(points_of([row(makespan_ps=2**53 - 1, waiting_ps=2**53 + 1)], ()))
+    depth = depth_in(points_of([row(makespan_ps=2**53 - 1, waiting_ps=2**53 + 1)], ()))
     assert depth["rows"]["makespan_ps"] == [9007199254740991]
     assert depth["rows"]["waiting_ps"] == ["9007199254740993"]
 
@@ -153,7 +158,7 @@ def test_only_a_page_of_a_running_sweep_reloads_itself(tmp_path: Path) -> None:
 
 def test_rows_of_experiments_that_pack_lie_beside_rows_of_others() -> None:
     rows = [row(processors=2), row(processors=4) | {"request_parts": 5}]
-    depth = depth_of(points_of(rows, ()))
+    depth = depth_in(points_of(rows, ()))
     assert depth["rows"]["request_parts"] == ["", 5]
 
 
@@ -249,7 +254,8 @@ def test_what_a_method_does_not_know_is_left_out() -> None:
     rows += [r | model for r in rows]
     points = points_of(rows, ("method",))
     assert points.axes["method"] == ["analytical", "simulate"]
+    limits = limits_of_points(Folder(Path(), rows), points)
     for number, profit in enumerate(points.profits):
-        assert bool(points.shares(number)) == (profit["method"] == "simulate")
+        assert bool(limits.shares(number)) == (profit["method"] == "simulate")
         assert bool(points.messages(number)) == (profit["method"] == "simulate")
-    json.dumps(depth_of(points), allow_nan=False)
+    json.dumps(depth_in(points), allow_nan=False)

@@ -1,0 +1,47 @@
+"""What a PE knows of the others: a row for each that it had to do with."""
+
+from __future__ import annotations
+
+from simmpp.common.compiled import kernel
+from simmpp.engine.arrays.hashtable import add, append, find
+from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, Run
+from simmpp.engine.arrays.views import exchanged, peer_rows, peers, pes
+
+
+@kernel
+def peer_of(s: Run, me: int, other: int) -> int:
+    """The row of what PE ``me`` knows of PE ``other``."""
+    key = me * s.processors + other
+    peer_row = find(peers(s), key)
+    if peer_row == NONE:
+        peer_row = add(peers(s), key)
+        peer_rows(s)[peer_row].load = NONE  # the rest is 0: rows of peers are never given back
+    return peer_row
+
+
+@kernel
+def known_load(s: Run, peer_row: int) -> int:
+    """What a PE knows of the load of another; NONE: nothing (load_info none)."""
+    peer = peer_rows(s)[peer_row]
+    if s.load_info == NO_INFO:
+        return NONE
+    if s.load_info == EXACT:
+        return pes(s)[peer.key % s.processors].settled_load
+    return s.initial_load if peer.load == NONE else peer.load
+
+
+@kernel
+def age_ps(s: Run, peer_row: int, now_ps: int) -> int:
+    """How old that is; since the start if never heard."""
+    peer = peer_rows(s)[peer_row]
+    if s.load_info == EXACT:
+        return 0
+    return now_ps if s.load_info == NO_INFO or peer.load == NONE else now_ps - peer.heard_ps
+
+
+@kernel
+def note_exchange(s: Run, me: int, peer_row: int) -> None:
+    """Rays or objects went from one to the other: loads are refreshed between them."""
+    if peer_rows(s)[peer_row].exchanged == 0:
+        peer_rows(s)[peer_row].exchanged = 1
+        append(exchanged(s), me, peer_row)

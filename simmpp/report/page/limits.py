@@ -1,0 +1,118 @@
+"""What limits the points of a page: parts of their makespans, as far as rows and record tell."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from simmpp.common.files import Row
+from simmpp.common.units import format_ps
+from simmpp.report.page.folder import Folder
+from simmpp.run import words
+from simmpp.run.limits import PARTS, Limits, MessageCosts, limits_of, together
+from simmpp.sweeps.intervals import of_logarithms
+from simmpp.sweeps.winners.answer import Sentence
+from simmpp.sweeps.winners.contest import contests_of
+from simmpp.sweeps.winners.points import ACCOUNTS, Points
+
+NEEDED = (*ACCOUNTS.values(), "messages", "bytes_sent", "rays_sent", "request_messages")
+"""Columns that a method may not know."""
+
+
+@dataclass(frozen=True)
+class PointLimits:
+    """The limits of all points, by number; of what is not known there are none."""
+
+    points: Points
+    of: Mapping[int, Limits]
+
+    @property
+    def parts(self) -> list[str]:
+        """Those that there are, in their order."""
+        there = {part for limits in self.of.values() for part in limits.parts_ps}
+        return [part for part in PARTS if part in there]
+
+    def shares(self, number: int) -> dict[str, float]:
+        """Of the makespan, each part; nothing of what is not known."""
+        shares = self.of[number].shares if number in self.of else {}
+        return {part: shares.get(part, 0.0) for part in self.parts} if shares else {}
+
+    def told(self, number: int) -> str:
+        """What limits a point most, and what would help first."""
+        return f"{words.capital(str(self.of[number]))}." if number in self.of else ""
+
+
+def limits_of_points(folder: Folder, points: Points) -> PointLimits:
+    """Work them out from rows, the record's machines and, of a run, the accounts of its PEs."""
+    costs, accounts = _costs(folder.record), _accounts(folder.record)
+    found = {}
+    for number, profit in enumerate(points.profits):
+        runs, nb = points.runs[number], profit["processors"]
+        of_pes = accounts.get(profit["policy"], ()) if len(runs) == 1 else ()
+        if runs and all(row.get(name, "") != "" for row in runs for name in NEEDED):
+            found[number] = together(limits_of(row, nb, costs.get(nb), *of_pes) for row in runs)
+    return PointLimits(points, found)
+
+
+def _costs(record: Mapping[str, Any]) -> dict[int, MessageCosts]:
+    """By number of PEs; where machines of one number differ, nobody knows which a row is of."""
+    found: dict[int, set[MessageCosts]] = {}
+    machines = record.get("machines")
+    for constants in machines if isinstance(machines, list) else []:
+        with suppress(KeyError, TypeError, ValueError):  # another version's record
+            found.setdefault(prod(constants["shape"]), set()).add(MessageCosts.of(constants))
+    return {nb: costs.pop() for nb, costs in found.items() if len(costs) == 1}
+
+
+def _accounts(record: Mapping[str, Any]) -> dict[str, tuple[list[int], list[int]]]:
+    """Compute and communication of each PE, by policy: the record of a run has them."""
+    policies = record.get("policies")
+    found = {}
+    for of in policies if isinstance(policies, list) else []:
+        with suppress(KeyError, TypeError):
+            found[of["policy"]] = of["pes"]["compute_ps"], of["pes"]["communication_ps"]
+    return found
+
+
+def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
+    """What limits the fastest dataflow of each case."""
+    points = limits.points
+    best = [contest.best for contest in contests_of(points) if contest.best in limits.of]
+    if len(best) == 1:
+        flow = words.capital(points.flow(best[0]))
+        yield Sentence(f"{flow} is {limits.of[best[0]]}.", tuple(best))
+    elif best:
+        counts = Counter(limits.of[number].first for number in best)
+        parts = []
+        for part, count in counts.most_common():
+            of = [limits.of[n].shares[part] * 100 for n in best if limits.of[n].first == part]
+            parts.append(f"{part} in {count} ({words.span(of)} % of the makespan)")
+        text = f"The fastest dataflow is limited most by {', '.join(parts)} of {len(best)} cases."
+        yield Sentence(text, tuple(best))
+
+
+def limit_table(limits: PointLimits) -> list[Row]:
+    """A line for each policy of the only case, or for the fastest dataflow of each case."""
+    points = limits.points
+    contests = contests_of(points)
+    is_one = len(points.cases) == 1
+    numbers = list(limits.of) if is_one else [c.best for c in contests if c.best in limits.of]
+    return [_line(limits, number, list(points.axes)) for number in numbers]
+
+
+def _line(limits: PointLimits, number: int, axes: list[str]) -> Row:
+    points = limits.points
+    makespan = of_logarithms([row["makespan_ps"] for row in points.runs[number]]).mean
+    of, shares = limits.of[number], limits.shares(number)
+    return {
+        **{words.SHORT.get(n, n): words.value(n, points.profits[number][n]) for n in axes},
+        "policy": points.flow(number),
+        "makespan": format_ps(int(float(f"{makespan:.4g}"))),
+        **{part: f"{share * 100:.3g} %" for part, share in shares.items()},
+        "limited most by": of.first,
+        "would help first": of.help[of.first],
+    }
