@@ -96,13 +96,13 @@ def run_command(
     """
     config = load_config(config_path, (*overrides, *engine), may_run=may_run)
     tell_files(config)
-    warn(config, is_swept=False)
     options.writable(picture, "--picture", ".png")
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
     if figures != out:
         options.claim(figures, "--figures")
+    warn(config, is_swept=False)
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(

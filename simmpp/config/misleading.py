@@ -56,16 +56,16 @@ def _long_tori(points: Sequence[Config]) -> Iterator[str]:
 
 
 def _own_shares(points: Sequence[Config], axes: Iterable[str]) -> Iterator[str]:
-    """Fractions below what a PE owns, which all come to the same."""
+    """Fractions up to what a PE owns, where there are several."""
     by_share = (point for point in points if point.memory.bytes is None)
     pairs = [(point.processors, point.memory.fraction) for point in by_share]
     if pairs and {"processors", "memory.fraction"} <= set(axes):  # they are multiplied
         pairs = list(product(*zip(*pairs, strict=True)))
     for nb in dict.fromkeys(nb for nb, _ in pairs):
-        less = dict.fromkeys(f"{float(x):g}" for of, x in pairs if of == nb and x * nb < 1)
-        if less:
+        less = dict.fromkeys(f"{float(x):g}" for of, x in pairs if of == nb and x * nb <= 1)
+        if len(less) > 1:
             owned = f"each of {nb} PEs owns 1/{nb} of the scene and holds that"
-            yield f"memory.fraction {', '.join(less)}: {owned}"
+            yield f"memory.fraction {', '.join(less)} come to the same: {owned}"
 
 
 def _ignored(config: Config, swept: Sequence[str]) -> Iterator[str]:
