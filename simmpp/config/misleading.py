@@ -9,7 +9,8 @@ from simmpp.common.places import KeyPath, Place, misplaced
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, point_at
 from simmpp.config.settings import long_policies
-from simmpp.machine.torus import Torus, default_shape, rounder
+from simmpp.machine.machine import TORUS
+from simmpp.machine.torus import across, default_shape, rounder
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import knows_loads, numbers_read
 
@@ -46,13 +47,19 @@ def _unused(config: Config, swept: Sequence[str]) -> Iterator[str]:
 def _long_tori(points: Sequence[Config]) -> Iterator[str]:
     """Numbers of PEs that make a ring or nearly one, with rounder ones near by."""
     for point in points:
-        if point.settings.machine.shape is None and (others := rounder(point.processors)):
-            torus = Torus(default_shape(point.processors))
-            near = " and ".join(f"{nb} ({Torus(default_shape(nb))})" for nb in others)
+        if point.settings.machine.shape is not None or not (near := rounder(point.processors)):
+            continue
+        if point.machine_for(point.processors).topology == TORUS:
+            shape = default_shape(point.processors)
+            others = " and ".join(f"{nb} ({_sizes(default_shape(nb))})" for nb in near)
             yield (
-                f"{point.processors} PEs are a torus of {torus}, so messages cross up to "
-                f"{torus.diameter} links; {near} {'is' if len(others) == 1 else 'are'} rounder"
+                f"{point.processors} PEs are a torus of {_sizes(shape)}, so messages cross up to "
+                f"{across(shape)} links; {others} {'is' if len(near) == 1 else 'are'} rounder"
             )
+
+
+def _sizes(shape: Sequence[int]) -> str:
+    return " x ".join(map(str, shape))
 
 
 def _own_shares(points: Sequence[Config], axes: Iterable[str]) -> Iterator[str]:
