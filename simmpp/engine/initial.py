@@ -12,7 +12,16 @@ from simmpp.common.compiled import njit
 from simmpp.common.randomness import key
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
-from simmpp.engine.arrays.records import COPY, LOAD_INFO, NONE, PACKING, PIGGYBACK, Run
+from simmpp.engine.arrays.records import (
+    COPY,
+    EXACT,
+    LOAD_INFO,
+    NONE,
+    PACKING,
+    PIGGYBACK,
+    SAMPLED,
+    Run,
+)
 from simmpp.engine.arrays.views import pes, rays
 from simmpp.engine.pe.step import note_peaks
 from simmpp.engine.record.counters import first_width
@@ -191,9 +200,11 @@ def _of_the_policy(
         "ask_reads": groups_read(policy.ask),
         "remembers": _remembers(policy),
         "to_holders": policy.to_holders,
-        "load_info": load_info,
+        "load_info": EXACT if load_info == SAMPLED and parameters.sample_ps == 0 else load_info,
         "listens": listens,
         "refresh_ps": NONE if refresh_ps is None or not listens else refresh_ps,
+        "sample_ps": parameters.sample_ps or 0,
+        "next_sample_ps": parameters.sample_ps or 0,
         "merge_requests": parameters.merge_requests,
         "packing": PACKING[parameters.packing],
     }
@@ -212,7 +223,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     for me in range(s.processors):
         pe = pes(s)[me]
         pe.load = pe.n_ready
-        pe.settled_load = pe.n_ready
+        pe.settled_load = pe.sampled_load = pe.n_ready
         pe.peak_rays = pe.n_ready
         note_peaks(s, pe)
     s.rays_left = pixel_pes.size

@@ -31,8 +31,8 @@ def cut(n: int, parts: int) -> NDArray[np.int32]:
     return np.repeat(np.arange(parts, dtype=np.int32), np.diff(cuts))
 
 
-Owners = Literal["bisection", "morton", "round_robin", "random"]
-Residents = Literal["random", "nearest", "hot"]
+Owners = Literal["bisection", "morton", "round_robin", "random", "used"]
+Residents = Literal["random", "nearest", "hot", "used"]
 Pixels = Literal["blocks", "rows", "tiles", "interleaved", "random"]
 
 
@@ -112,11 +112,16 @@ class Memory:
     bytes: Size | None = None
     """The other way to say it: room for resident objects, in place of the fraction."""
     residents: Residents = "random"
-    """Which objects are resident besides a PE's own."""
+    """Which objects are resident besides a PE's own: `hot`, most used in a coarse pre-pass; `used`,
+    most used there by the PE's own pixels, for their size."""
     transient: Transient = 0
     """Fetched objects kept besides the resident ones (least recently used leaves): a number; a
     share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
     are resident in the mean). The replicated scene fetches none."""
+
+    hot: Share = Fraction(0)
+    """Share of the objects, those most used for their size in a coarse pre-pass, that come first on
+    every PE; they count as residents."""
 
     if TYPE_CHECKING:  # arguments take more than fields hold
 
@@ -126,6 +131,7 @@ class Memory:
             bytes: int | str | None = ...,
             residents: Residents = ...,
             transient: Fraction | int | str = ...,
+            hot: Fraction | float | str = ...,
         ) -> None: ...
 
     @property
@@ -155,7 +161,8 @@ class PlacementRules:
     """How owners and pixels are chosen."""
 
     owners: Owners = "bisection"
-    """How objects are dealt to their owners."""
+    """How objects are dealt to their owners; `used`: to the PE whose pixels use them most in a
+    coarse pre-pass."""
     pixels: PixelRule = "blocks"
     """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
     squares of so many pixels along each side (cells)."""

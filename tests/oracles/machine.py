@@ -55,6 +55,7 @@ class Simulation(Dispatch):
 
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
+        self.sample_loads(time)
         pe.ended_load = pe.load
         pe.refresh_allowed = True
         if pe.inbox:
@@ -166,6 +167,7 @@ class Simulation(Dispatch):
 
     def dispatch(self, time: int, pe: PE) -> None:
         """The work is done: send, and begin anew."""
+        self.sample_loads(time)
         messages_before = len(self.ledger.sent)
         clock = self.send_all(time, pe)
         self.ledger.end_activity(pe.number, clock)

@@ -50,6 +50,8 @@ class World:
         self.positions = [0] * self.workload.n_rays
         self.ledger.ray_hops = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
+        self.sampled = [pe.load for pe in self.pes]
+        self.sampled_at = 0
         for pe in self.pes:
             self.sample_rays(pe)
             self.sample_bytes(pe)
@@ -69,6 +71,13 @@ class World:
         """Let a PE begin or dispatch at a time."""
         heapq.heappush(self.queue, ((time, 1, pe.number, pe.instants, 0), what, pe))
         pe.instants += 1
+
+    def sample_loads(self, time: int) -> None:
+        """If a multiple of the period has passed since all loads were sampled, sample them."""
+        period = self.policy.sample_ps
+        if period and time // period > self.sampled_at // period:
+            self.sampled = [pe.ended_load for pe in self.pes]
+            self.sampled_at = time
 
     def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
         """Charge a PE; returns the time when it has paid."""

@@ -193,6 +193,7 @@ PARAMETERS = (
     "load_info",
     "listens",  # remembers the loads in headers
     "refresh_ps",  # NONE: no refresh
+    "sample_ps",  # between two samples of all loads
     "merge_requests",
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
@@ -213,6 +214,8 @@ COUNTERS = (
     "bin_width",  # k: the bins of the counters are 2^k ps wide
     "n_events",  # in the heap of the compiled event loop
     "arrivals",  # that it has seen
+    "sampled_ps",  # when all loads were last sampled
+    "next_sample_ps",
 )
 REPORT = (
     "phase",  # of the PE's next instant

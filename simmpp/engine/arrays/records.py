@@ -20,6 +20,7 @@ PE = np.dtype(
         ("n_ready", "i8"),
         ("load", "i8"),  # rays held: ready + waiting
         ("settled_load", "i8"),  # load at the end of the last ended activity
+        ("sampled_load", "i8"),  # that load when all were last sampled
         ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
         ("messages_sent", "i8"),
         ("busy_until_ps", "i8"),
@@ -169,8 +170,14 @@ SLICE = np.dtype(
 )
 """What is counted of a PE when it works again, or the run is over: it may end before the work."""
 
-PIGGYBACK, EXACT, NO_INFO = range(3)
-LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
+PIGGYBACK, EXACT, NO_INFO, SAMPLED, TWO = range(5)
+LOAD_INFO = {
+    "piggyback": PIGGYBACK,
+    "exact": EXACT,
+    "none": NO_INFO,
+    "sampled": SAMPLED,
+    "two": TWO,
+}
 SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
 PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
 BEGIN, DISPATCH = range(2)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Row, Run
+from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, SAMPLED, UNPACK, Row, Run
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
@@ -27,7 +27,7 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.peers import note_exchange, peer_of
+from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
@@ -48,6 +48,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     and the number of messages in the outbox.
     """
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
+    if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
+        sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
     if phase == DISPATCH:
