@@ -74,7 +74,7 @@ def test_names() -> None:
     assert completed("run", "--policy", "") == list(POLICIES)
     assert completed("run", "--policy", "ray,c") == ["ray,concurrent"]
     assert completed("run", "--engine", "=") == ["compiled", "simpy"]
-    assert completed("machine", "t") == ["t3d", "t3e", "tpu-v4"]
+    assert completed("machine", "t") == ["t3d", "t3e", "t3e-shmem", "tpu-v4"]
     assert completed("reading", "") == ["mixed", "plain"]
     assert completed("reproduce", "--reading", "p") == ["plain"]
     assert completed("keys", "see") == ["seeds"]

@@ -17,8 +17,9 @@ from simmpp.report.page.folder import read_folder
 from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
-from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.points import points_of
+from simmpp.sweeps.winners.sentence import Sentence
 
 PROFITS_SHOWN = 40
 

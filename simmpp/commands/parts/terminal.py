@@ -122,3 +122,11 @@ def progress_bars() -> Iterator[Progress]:
     )
     with bars:
         yield bars
+
+
+@contextmanager
+def at_work(what: str) -> Iterator[None]:
+    """A bar that moves, for what takes seconds but can't say how far it is."""
+    with progress_bars() as bars:
+        bars.add_task(what, total=None)
+        yield

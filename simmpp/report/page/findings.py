@@ -15,7 +15,7 @@ from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.classical import FREE, Duel, duels_of
 from simmpp.report.page.measures import ALL
 from simmpp.run import words
-from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
@@ -27,6 +27,7 @@ from simmpp.sweeps.winners.contest import (
     replicated_policies,
 )
 from simmpp.sweeps.winners.points import Points
+from simmpp.sweeps.winners.sentence import Sentence
 
 TIME_PROFIT = ALL["time_profit"]
 

@@ -8,12 +8,13 @@ from simmpp.run import words
 from simmpp.sweeps.winners.contest import EQUAL, SURE, TOO_FEW_SEEDS, UNSURE, Contest
 from simmpp.sweeps.winners.points import Points
 from simmpp.sweeps.winners.regions import dividing_axes, extent, region
+from simmpp.sweeps.winners.sentence import Sentence
 
 MOSTLY = 0.75
 """Share of the cases from which one winner is what one should take."""
 
 
-def told(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
+def told(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
     """Who wins, where, by how much and how sure that is; then where nobody wins."""
     won: dict[str, list[Contest]] = {}
     for contest in contests:
@@ -21,10 +22,12 @@ def told(points: Points, contests: Sequence[Contest]) -> Iterator[str]:
             won.setdefault(points.flow(contest.best), []).append(contest)
     ranked = sorted(won.values(), key=len, reverse=True)
     if ranked:
-        winners = ", ".join(_winners(points, ranked, contests))
-        yield "; ".join([winners, *_lead(points, [c for of in ranked for c in of])])
-    yield from _open(points, UNSURE, contests)
-    yield from _open(points, EQUAL, contests)
+        of_all = [contest for of in ranked for contest in of]
+        text = "; ".join([", ".join(_winners(points, ranked, contests)), *_lead(points, of_all)])
+        yield Sentence(f"{text}.", tuple(cases_of(of_all)))
+    for certainty in (UNSURE, EQUAL):
+        if some := [contest for contest in contests if contest.certainty == certainty]:
+            yield Sentence(_open(points, some, contests), tuple(cases_of(some)))
 
 
 def _winners(
@@ -91,7 +94,7 @@ def _aside(text: str) -> str:
 def _lead(points: Points, won: Sequence[Contest]) -> Iterator[str]:
     """Who comes next, by how much, and how sure that is."""
     nexts = words.any_of(points.flow(c.second) for c in won if c.second is not None)
-    name = f", {nexts}," if " or " not in nexts else ""
+    name = f", {nexts}," if len({points.flow(c.best) for c in won}) == 1 else ""
     longer = words.times_as_long(contest.lead for contest in won)
     unsure = [contest for contest in won if contest.certainty == TOO_FEW_SEEDS]
     if longer:
@@ -106,20 +109,17 @@ def _sure(won: Sequence[Contest]) -> str:
     return f", in each case beyond chance (95 % intervals, {seeds} seeds)"
 
 
-def _open(points: Points, certainty: str, contests: Sequence[Contest]) -> Iterator[str]:
+def _open(points: Points, some: Sequence[Contest], contests: Sequence[Contest]) -> str:
     """Where nobody wins, for seeds can't tell or two are equal."""
-    if not (some := [contest for contest in contests if contest.certainty == certainty]):
-        return
     those = [name for contest in some for name in _foremost(points, contest)]
     share = _share(points, some, contests)
-    if certainty == EQUAL:
-        yield f"In {share} {words.any_of(those, 'and')} are equally fast"
-    else:
-        longer = words.times_as_long(contest.lead for contest in some)
-        yield (
-            f"In {share} seeds can't tell who is fastest, {words.any_of(those)} "
-            f"(on average the next takes {longer})"
-        )
+    if some[0].certainty == EQUAL:
+        return f"In {share} {words.any_of(those, 'and')} are equally fast."
+    longer = words.times_as_long(contest.lead for contest in some)
+    return (
+        f"In {share} seeds can't tell who is fastest, {words.any_of(those)} "
+        f"(on average the next takes {longer})."
+    )
 
 
 def few(seeds: int) -> str:

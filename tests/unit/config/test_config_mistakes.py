@@ -102,7 +102,7 @@ MISTAKES = [
     (S + "memory: 3", "c.yaml:2: memory: value 3: expected a mapping (key: value)"),
     (
         S + "machine: {preset: t3x}",
-        "c.yaml:2: machine.preset: value 't3x': expected bluegene-l, t3d",
+        "c.yaml:2: machine.preset: value 't3x': expected bluegene-l, cloud",
     ),
     (S + "machine: {shape: [8, 4, 4]}", f"c.yaml:2: machine.shape: value [8, 4, 4]: {PRODUCT} 64"),
     (

@@ -51,13 +51,14 @@
     return value;
   };
   const dressed = (layout, style) => {
-    const axis = (own) => ({
+    const broken = ({ ticktext }) => (ticktext ? { ticktext: ticktext.map((text) => text.replace(/ (?=[^ ]+$)/, "<br>")) } : {});
+    const axis = (own, names) => ({
       gridcolor: style.getPropertyValue("--grid").trim(), linecolor: style.getPropertyValue("--rule").trim(),
       showline: true, ticks: "outside", ticklen: 4, tickcolor: style.getPropertyValue("--rule").trim(),
-      fixedrange: !fine, ...own, title: { standoff: 8, font: { size: 13 }, ...own.title },
+      fixedrange: !fine, ...own, ...names, title: { standoff: 8, font: { size: 13 }, ...own.title },
     });
     return {
-      ...layout, xaxis: axis(layout.xaxis), yaxis: axis(layout.yaxis), dragmode: fine ? "zoom" : false,
+      ...layout, xaxis: axis(layout.xaxis, broken(layout.xaxis)), yaxis: axis(layout.yaxis), dragmode: fine ? "zoom" : false,
       margin: { l: 48, r: 10, t: 8, b: 40, ...layout.margin }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: style.getPropertyValue("--ink").trim() },
       hoverlabel: { bgcolor: style.getPropertyValue("--raised").trim(), bordercolor: style.getPropertyValue("--rule").trim(),
