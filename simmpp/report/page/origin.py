@@ -19,12 +19,11 @@ def facts(folder: Folder) -> list[str]:
     if not rows:
         return ["no rows yet"]
     parts = [f"{name}: {part.path}" for name, part in folder.parts.items()]
-    pes = words.said("processors", processors[0])
-    if len(processors) > 1:
-        pes = f"{processors[0]} to {processors[-1]} PEs"
+    many = "processing element (PE)" if processors == [1] else "processing elements (PEs)"
+    pes = f"{words.span(processors)} {many}"
     methods = counted(len({row["method"] for row in rows}), "method")
     drawn = counted(folder.seeds, "seed") if folder.rows else methods
-    return [*parts, named, pes, drawn, counted(len(rows), "row")]
+    return [*parts, f"simulated: {named}", pes, drawn, counted(len(rows), "row")]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:
