@@ -148,8 +148,8 @@ def test_a_point_is_chosen_with_the_keyboard(opened: Any, report: Path) -> None:
     page.keyboard.press("ArrowDown")
     page.locator("#policy").focus()
     page.keyboard.press("ArrowUp")
-    assert before == "<i>scene</i>, 8 PEs, x = 10 %: replicated scene"  # gains most
-    assert title.inner_text() == "<i>scene</i>, 8 PEs, x = 50 %: concurrent dataflow"
+    assert before == "<i>scene</i>, 8 PEs, x = 10 %: concurrent dataflow"  # gains most
+    assert title.inner_text() == "<i>scene</i>, 8 PEs, x = 50 %: ray dataflow"
 
 
 def test_curves_are_hidden_and_the_theme_is_changed_with_the_keyboard(
@@ -220,10 +220,10 @@ def test_the_page_of_a_running_sweep_reloads_itself(
     assert page.locator(".live").inner_text() == "running: 60 of 60 rows done"
     page.locator("#place").select_option(index=1)
     page.locator("#place").blur()
-    assert page.locator("#point-title").inner_text() == "x = 10 %: replicated scene"
+    assert page.locator("#point-title").inner_text() == "x = 10 %: concurrent dataflow"
     write(len(rows), is_running=False)
     page.locator(".live").wait_for(state="detached")
-    title = "mountain:4, 8 PEs, x = 10 %: replicated scene"
+    title = "mountain:4, 8 PEs, x = 10 %: concurrent dataflow"
     page.locator("#point-title", has_text=title).wait_for()
     asked = len(found.asked)
     page.wait_for_timeout(6000)  # longer than a running page waits
