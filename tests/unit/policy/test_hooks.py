@@ -106,6 +106,7 @@ def in_a_lambda(v: View) -> int:
 
 def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
     assert names_in(calls_another) >= {"known_load", "hops"}
+    assert compiled(calls_another, known_load=3, hops=4) == 7
     assert groups_read(calls_another) == LOADS | WAY
     assert groups_read(in_a_lambda) == RANDOM
     assert groups_read(None) == groups_read(POLICIES["ray"].send) == 0
