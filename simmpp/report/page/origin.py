@@ -23,7 +23,7 @@ def facts(folder: Folder) -> list[str]:
     pes = f"{words.span(processors)} {many}"
     return [
         *parts,
-        f"simulated: {named}",
+        f"simulated ray tracing of {named}",
         pes,
         counted(folder.seeds, "seed"),
         counted(len(rows), "row"),
