@@ -60,6 +60,8 @@ def _curves(panel: Panel) -> Drawn:
     drawing["annotations"] = [_remark(stated, panel) for stated in panel.stated if stated.label]
     if panel.level is not None:
         drawing["shapes"].append(_level(panel.level))
+    if any(curve.notes for curve in panel.curves):
+        drawing["margin"] = {"t": 22, "r": 30}  # room for what stands beside the outermost points
     return {"data": traces, "layout": drawing}
 
 
@@ -96,7 +98,7 @@ def _noted(curve: Curve, xs: list[float]) -> Drawn:
     """The notes of a curve, to the upper right of their points."""
     notes = [html.escape(curve.notes.get(x, "")).replace("\n", "<br>") for x in xs]
     style = {"textposition": "top right", "textfont": {"size": 11, "color": "var(--muted)"}}
-    return {"mode": "lines+markers+text", "text": notes, **style}
+    return {"mode": "lines+markers+text", "text": notes, "cliponaxis": False, **style}
 
 
 def _short(values: Iterable[float]) -> list[float]:

@@ -12,7 +12,7 @@ from simmpp.run import words
 
 def facts(folder: Folder) -> list[str]:
     """One line: scenes, PEs, policies, seeds, rows."""
-    rows = folder.rows
+    rows = folder.rows or folder.bench
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     processors = sorted({row["processors"] for row in rows})
     named = ", ".join(scenes) if len(scenes) <= 4 else counted(len(scenes), "scene")
@@ -21,13 +21,10 @@ def facts(folder: Folder) -> list[str]:
     parts = [f"{name}: {part.path}" for name, part in folder.parts.items()]
     many = "processing element (PE)" if processors == [1] else "processing elements (PEs)"
     pes = f"{words.span(processors)} {many}"
-    return [
-        *parts,
-        f"simulated ray tracing of {named}",
-        pes,
-        counted(folder.seeds, "seed"),
-        counted(len(rows), "row"),
-    ]
+    methods = counted(len({row["method"] for row in rows}), "method")
+    drawn = counted(folder.seeds, "seed") if folder.rows else methods
+    of = f"simulated ray tracing of {named}"
+    return [*parts, of, pes, drawn, counted(len(rows), "row")]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -125,14 +125,17 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
     folder, points = report.folder, report.points
     pictures = [] if folder.parts else beside(folder.path)
     along = abscissas(points.axes)[0]
+    answered = [] if _has_no_rows(report) else answer(points)
+    said, warned = _sentences(report), report.warnings(is_followed=is_running)
+    made = origin(folder)
     return {
         "title": folder.title or "report",
         "facts": facts(folder),
         "live": f"running: {standing_of(folder).progress}" if is_running else "",
-        "warnings": report.warnings(is_followed=is_running),
-        "answer": [] if _has_no_rows(report) else answer(report.points),
+        "warnings": warned,
+        "answer": answered,
         "flows": _flows(report.points),
-        "sentences": _sentences(report),
+        "sentences": said,
         "limits": limit_table(report.limits),
         "limits_of": LIMITS_ID,
         "wins": wins(points),
@@ -143,8 +146,15 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "stills": None if is_running else stills,
         "has_points": any(points.runs),
         "beside": pictures,
-        "sections": _sections(report, [(id, name) for id, name, _, _ in pictures]),
-        "origin": origin(folder),
+        "sections": [
+            *([("claims", "Claims")] if folder.claims else []),  # what a reproduction is for
+            *([("summary", "Summary")] if answered or said or warned else []),
+            *((group.id, group.name) for group in report.groups),
+            *([("point", "One point"), ("rows", "All points")] if any(points.runs) else []),
+            *((id, name) for id, name, _, _ in pictures),
+            *([("made", "How it was made")] if made else []),
+        ],
+        "origin": made,
         "made": "Made by simmpp from the rows in this folder; nothing is loaded from anywhere.",
         "data": _data(report, is_running),
     }
@@ -178,13 +188,6 @@ def _verdicts(folder: Folder) -> str:
         if counts[kind]
     ]
     return f"Of {len(folder.claims)} claims: {', '.join(parts)}."
-
-
-def _sections(report: Report, others: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    claims = [("claims", "Claims")] if report.folder.claims else []  # what a reproduction is for
-    depth = [("point", "One point"), ("rows", "All points")] if any(report.points.runs) else []
-    groups = [(group.id, group.name) for group in report.groups]
-    return [*claims, ("summary", "Summary"), *groups, *depth, *others, ("made", "How it was made")]
 
 
 def _data(report: Report, is_running: bool) -> dict[str, Any]:

@@ -55,7 +55,7 @@
       const found = lines.filter((line) => (!among || among(line)) && wanted.every((word) => line.text.includes(word)));
       return by < 0 ? found : found.sort(inOrder(by, way));
     };
-    const number = made("output", {});
+    const number = made("output", {}, `${lines.length} rows`);
     const show = () => {
       const found = chosen();
       table.tBodies[0].replaceChildren(...found.slice(0, MOST).map((line) => line.element()));
