@@ -50,8 +50,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     is_drawn = draws(memory, rules) or is_random
     is_drawn = is_drawn and METHODS[settings.method].is_placed
     seed = point.seed if is_drawn else 0
-    constants = asdict(replace(config.machine_for(config.processors), sources={}))
-    machine = {name: value for name, value in constants.items() if name not in ("name", "sources")}
+    machine = constants_of(config)
     # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     place = _hash(digest, machine, held, asdict(rules), seed)
@@ -63,6 +62,12 @@ def task_of(point: GridPoint, digest: str) -> Task:
         policy=policy,
         seed=seed,
     )
+
+
+def constants_of(config: Config) -> dict[str, Any]:
+    """All of a point's machine that decides a simulation."""
+    constants = asdict(replace(config.machine_for(config.processors), sources={}))
+    return {name: value for name, value in constants.items() if name not in ("name", "sources")}
 
 
 def canonical(policy: PolicyParameters) -> PolicyParameters:

@@ -46,10 +46,15 @@ def test_commands_and_options() -> None:
 def test_every_option_of_every_command(name: str) -> None:
     real = main.get_command(click.Context(main), name)
     assert real is not None
-    light = completion.command(name, "")
+    light = completion.command(name)
     assert [(p.opts, p.nargs, p.multiple) for p in light.params] == [
         (p.opts, p.nargs, p.multiple) for p in real.params
     ]
+
+
+def test_commands_in_a_command() -> None:
+    assert {"new", "check", "list"} <= set(completed("policy", ""))
+    assert completed("policy", "ch") == ["check"]
 
 
 def test_keys_and_their_values() -> None:

@@ -91,7 +91,7 @@ def _table(result: SweepResult) -> Fitting:
         }
         for row in _profits(result).head(PROFITS_SHOWN).to_dict("records")
     ]
-    return table(rows, n_keys=len(names))
+    return table(rows, n_keys=len(names), is_sweep=True)
 
 
 def _profits(result: SweepResult) -> DataFrame:

@@ -8,13 +8,16 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from simmpp.commands.parts.tables import Fitting
+
+if TYPE_CHECKING:
+    from simmpp.config.config import Config
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
@@ -71,6 +74,14 @@ def _is_terminal(stream: TextIO | None) -> bool:
 def notice(text: str) -> None:
     """One line for the user that isn't a result."""
     click.echo(f"simmpp: {text}", err=True)
+
+
+def warn(config: Config, *, is_swept: bool) -> None:
+    """Say what a configuration has that does not do what it seems to."""
+    from simmpp.config.misleading import misleading
+
+    for line in misleading(config, is_swept=is_swept):
+        notice(f"warning: {line}")
 
 
 def wrote(*paths: Path) -> None:

@@ -31,6 +31,7 @@ from simmpp.report.page.together import warnings_of_all
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.winners.contest import replicated_policies
 from simmpp.sweeps.winners.points import Points, points_of
 from simmpp.sweeps.winners.sentence import Sentence
 
@@ -181,7 +182,11 @@ def _data(report: Report, is_running: bool) -> dict[str, Any]:
 
 
 def _first(points: Points) -> int:
-    """The point shown before one is chosen: the one that gains most."""
-    gains = [row["time_profit"] for row in points.profits]
-    finite = [n for n, gain in enumerate(gains) if words.is_finite(gain)]
-    return max(finite, key=lambda n: float(gains[n]), default=0)
+    """The point shown before one is chosen: the dataflow that gains most."""
+    ceilings = replicated_policies(points)
+    gains = {
+        number: float(row["time_profit"])
+        for number, row in enumerate(points.profits)
+        if words.is_finite(row["time_profit"]) and row["policy"] not in ceilings
+    }
+    return max(gains, key=lambda number: gains[number], default=0)

@@ -94,7 +94,7 @@ def _aside(text: str) -> str:
 def _lead(points: Points, won: Sequence[Contest]) -> Iterator[str]:
     """Who comes next, by how much, and how sure that is."""
     nexts = words.any_of(points.flow(c.second) for c in won if c.second is not None)
-    name = f", {nexts}," if " or " not in nexts else ""
+    name = f", {nexts}," if len({points.flow(c.best) for c in won}) == 1 else ""
     longer = words.times_as_long(contest.lead for contest in won)
     unsure = [contest for contest in won if contest.certainty == TOO_FEW_SEEDS]
     if longer:

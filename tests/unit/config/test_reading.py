@@ -389,11 +389,11 @@ def test_what_is_no_name_is_refused(value: object) -> None:
         ("policy: {object: {name: LEAF}}", "policy.object.name: expected none: readings do"),
         (
             "policy: {object: {value: {label: v}, source: s}}",
-            "policy.object: expected none: readings",
+            "policy.object: label: expected none: readings",
         ),
         (
             "machine: {t3e: {value: {shape: v}, source: s}}",
-            "machine.t3e: expected none: readings do",
+            "machine.t3e: shape: expected none: readings do",
         ),
         ("placement: LEAF", "placement: value 'v': expected a mapping (key: value)"),
         ("memory: LEAF", "memory: value 'v': expected a mapping (key: value)"),

@@ -67,10 +67,12 @@
   };
   // Bands, and what is said of a point, are worked out here: as data they would be most of the page.
   const short = (value) => String(Number(value.toPrecision(4)));
-  const texts = ({ name, x, y, meta }, { xaxis }) => x.map((at, n) => {
+  // Axes say their unit last, in brackets: "makespan (ms)".
+  const unitOf = ({ title }) => { const unit = /\(([^()]+)\)$/.exec(title?.text ?? ""); return unit ? ` ${unit[1]}` : ""; };
+  const texts = ({ name, x, y, meta }, { xaxis, yaxis }) => x.map((at, n) => {
     const place = xaxis.ticktext && xaxis.tickvals.includes(at) ? xaxis.ticktext[xaxis.tickvals.indexOf(at)] : short(at);
     const [low, high] = meta ? [short(meta.low[n]), short(meta.high[n])] : [];
-    return `<b>${name}</b><br>at ${place}: ${short(y[n])}${low !== high ? ` (${low} to ${high})` : ""}`;
+    return `<b>${name}</b><br>at ${place}${unitOf(xaxis)}: ${short(y[n])}${low !== high ? ` (${low} to ${high})` : ""}${unitOf(yaxis)}`;
   });
   const band = ({ name, legendgroup, x, meta }) => ({
     type: "scatter", name, legendgroup, mode: "lines", line: { width: 0 }, hoverinfo: "skip", fill: "toself", fillcolor: meta.band,
