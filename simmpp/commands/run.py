@@ -15,7 +15,16 @@ from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
-from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, warn, wrote
+from simmpp.commands.parts.terminal import (
+    FAILED,
+    at_work,
+    go_on,
+    notice,
+    progress_bars,
+    say,
+    warn,
+    wrote,
+)
 from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
@@ -208,8 +217,9 @@ def _print_files(out: Path | None, looks: Looks) -> None:
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    scene = scene_of(point.config.ray_source, "--picture")()
-    save_png(render(scene, point.config.picture, point.workload), path)
+    with at_work("drawing the picture"):
+        scene = scene_of(point.config.ray_source, "--picture")()
+        save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
@@ -219,7 +229,8 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
-        problem = verify(scene, point.config.picture, point.workload, rays, objects)
+        with at_work(f"verifying {run.parameters.title}"):
+            problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None
