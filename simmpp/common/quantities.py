@@ -18,6 +18,7 @@ from simmpp.common.validate import whole
 
 _PREFIX = "(?:[pnuµμmkMGT]|[KMGT]i|pico|nano|micro|milli|kilo|mega|giga|tera|kibi|mebi|gibi|tebi)?"
 _SECONDS, _BYTES = rf"{_PREFIX}(?:s|min|seconds?|minutes?)", rf"{_PREFIX}(?:B|bytes?)"
+_BYTES_OR_BITS = rf"{_PREFIX}(?:B|bytes?|b|bits?)"
 
 
 def _text(unit: str) -> dict[str, str]:
@@ -27,7 +28,7 @@ def _text(unit: str) -> dict[str, str]:
 TIME = {"anyOf": [_text(_SECONDS), {"const": 0}]}
 """JSON schemas of what users write."""
 SIZE = {"anyOf": [_text(_BYTES), {"const": 0}]}
-BANDWIDTH = {"anyOf": [_text(f"{_BYTES}/{_SECONDS}"), {"const": "unlimited"}]}
+BANDWIDTH = {"anyOf": [_text(f"{_BYTES_OR_BITS}/{_SECONDS}"), {"const": "unlimited"}]}
 SHARE_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})?")
 SHARE_OF_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})")
 """A share that can't be taken for a number."""

@@ -114,7 +114,7 @@ def _seen(
     cameras = tuple(found for content in contents for found in content.cameras)
     lamps = [light for content in contents for light in content.lights]
     lamps += [far_off(sun, bounds) for content in contents for sun in content.suns]
-    said, lit = f"{FRAMED}, {axis} up", f"{counted(len(lights), 'light')} beside it"
+    said, lit = f"{FRAMED}, {axis} up", f"{counted(len(lights), 'light')} around it all"
     cameras = (*cameras, (EVERYTHING, camera))
     if len(cameras) > 1:
         said, camera = of_file(cameras[0][0]), cameras[0][1]
@@ -138,6 +138,9 @@ def _read(file: Path, by_group: bool) -> Content:
     data = read_whole(file)
     kind = kind_of(file)
     read = READERS.get(kind)
+    if kind == "nff":
+        problem = "NFF is a scene of its own, no mesh: expected it under scene.nff"
+        raise SceneError(problem, where=str(file))
     if read is None:
         known = f"neither NFF (.nff) nor a mesh that is read ({', '.join(READERS)}, or .gz of one)"
         raise SceneError(f"{known}: convert it to GLB, OBJ or PLY", where=str(file))

@@ -21,6 +21,7 @@ from simmpp.common.folders import SWEEP, claimed, note_call
 from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole
 from simmpp.config.config import Config, config_from_mapping, load_config, with_key
+from simmpp.policy.policy import Policy
 from simmpp.run.inputs import cache_workload
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import write_record
@@ -114,6 +115,8 @@ def run_sweep(
     if engine is not None:
         config = with_key(config, "engine", engine)
     plan, folder = plan_of(config), None if out is None else Path(out)
+    if pool is not None or workers > 1 or cluster is not None:
+        _refuse_objects(plan)
     with (
         claimed(folder, SWEEP),
         closing(_results(plan, folder)) as results,
@@ -133,6 +136,14 @@ def _check(workers: object, cluster: object, timeout_s: object, out: str | Path 
     require_kind("timeout_s", timeout_s, float, int, NoneType)
     if isinstance(timeout_s, float | int) and not timeout_s > 0:
         raise ConfigError(f"timeout_s: value {shown(timeout_s)}: expected seconds above 0")
+
+
+def _refuse_objects(plan: Plan) -> None:
+    """Raise ConfigError for policies that other processes can't be sent."""
+    for planned in plan.points:
+        if isinstance(planned.point.policy.file, Policy):
+            problem = "is an object of Python: workers are sent files: expected one, or workers=1"
+            raise ConfigError(f"policy {planned.point.policy.title!r} {problem}")
 
 
 def _results(plan: Plan, folder: Path | None) -> Results:

@@ -107,7 +107,7 @@ class SceneSettings(Strict):
     """From where it is seen; when not given, by the file's camera if it has one, else one that
     shows everything."""
     lights: Lights | None = None
-    """Point lights in place of the file's, or of two beside the camera where it has none."""
+    """Point lights in place of the file's, or of two around all of it where it has none."""
     up: Annotated[str, *one_of(*AXES)] | None = None
     """The axis that is upwards in the picture; when not given, y in meshes (z in STL) and the
     camera's own where the file has one."""

@@ -25,7 +25,7 @@ from simmpp.engine.arrays.records import ARRIVAL, BINS, COMPUTE, NONE, RECEIVE, 
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES, simulate
-from simmpp.machine.machine import CopyCost, Machine, TestCost
+from simmpp.machine.machine import FAT_TREE, TORUS, CopyCost, Machine, TestCost
 from simmpp.machine.messages import MESSAGE_KINDS, RAYS
 from simmpp.machine.torus import DIRECTIONS, ROWS_PER_PE, link_towards
 from simmpp.plot.matplotlib_panels import SETTINGS
@@ -34,6 +34,7 @@ from simmpp.report.run_figures.data import Motion, marks_of, motion_of
 from simmpp.report.run_figures.drawing import _progress
 from simmpp.report.run_figures.recorder import _draw
 from simmpp.report.run_figures.torus import draw_torus
+from simmpp.report.run_figures.tree import draw_tree, links_of
 from simmpp.run.point import Point, PolicyRun
 from simmpp.sweeps.executors import processes
 
@@ -133,6 +134,28 @@ def test_memory_and_pixels_add_up(case: Case) -> None:
     assert (motion.peak_bytes <= most).all()
     assert motion.transient_bytes.min() >= 0
     assert motion.pixel_owner.ravel().tolist() == case.placement.pixel_pes.tolist()
+
+
+@given(case=cases())
+@settings(max_examples=15, deadline=None, derandomize=True)
+def test_links_of_trees_carry_what_their_pes_exchange_with_others(case: Case) -> None:
+    _, motion = seen(case)
+    nb = case.machine.processors
+    if case.machine.topology == TORUS:
+        return
+    links = links_of(motion)
+    for height in range(int(max(link.above[1] for link in links))):
+        here = [link for link in links if link.below[1] == height]
+        far = np.reshape(
+            [distance(case.machine, i, j) for i in range(nb) for j in range(nb)], (nb, nb)
+        )
+        beyond = far > (2 * height if case.machine.topology == FAT_TREE else height)
+        crossed = int(motion.bytes[beyond].sum())
+        assert sum(link.up_bytes for link in here) == crossed
+        assert sum(link.down_bytes for link in here) == crossed
+    figure = Figure(layout="constrained")
+    draw_tree(figure, motion)
+    FigureCanvasAgg(figure).draw()
 
 
 @given(case=cases())

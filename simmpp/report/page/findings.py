@@ -194,7 +194,8 @@ def _sure(won: Sequence[Contest]) -> str:
     if counts[ALONE] == len(won):
         return "nothing to compare with"
     if not counts[UNSURE]:
-        return "beyond the 95 % interval" + (" at each" if len(won) > 1 else "")
+        least = words.times_as_long([min(contest.low for contest in won)])
+        return f"at least {least} (95 % interval)"
     if counts[UNSURE] == len(won):
         return "no difference that these seeds can show"
     return f"beyond the 95 % interval at {counts[SURE]} of {len(won)}"

@@ -19,11 +19,13 @@ def facts(folder: Folder) -> list[str]:
     if not rows:
         return ["no rows yet"]
     parts = [f"{name}: {part.path}" for name, part in folder.parts.items()]
-    many = "processing element (PE)" if processors == [1] else "processing elements (PEs)"
-    pes = f"{words.span(processors)} {many}"
+    pes = f"{processors[0]} processing element{'s (PEs)' if processors[0] > 1 else ' (PE)'}"
+    if len(processors) > 1:
+        pes = f"{processors[0]} to {processors[-1]} processing elements (PEs)"
     methods = counted(len({row["method"] for row in rows}), "method")
     drawn = counted(folder.seeds, "seed") if folder.rows else methods
-    return [*parts, f"simulated: {named}", pes, drawn, counted(len(rows), "row")]
+    of = f"simulated ray tracing of {named}"
+    return [*parts, of, pes, drawn, counted(len(rows), "row")]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:

@@ -11,6 +11,8 @@ from simmpp.common.compiled import njit
 from simmpp.engine.record.counters import Ints
 from simmpp.engine.residency import resident_bytes
 from simmpp.engine.result import Result
+from simmpp.machine.fat_tree import Tree
+from simmpp.machine.levels import Blocks
 from simmpp.machine.topology import (
     Network,
     Topology,
@@ -23,7 +25,7 @@ from simmpp.machine.topology import (
 from simmpp.machine.torus import Torus
 from simmpp.run.point import Point, PolicyRun
 
-OF_NETWORKS: dict[type, tuple[str, ...]] = {Torus: ("torus",)}
+OF_NETWORKS: dict[type, tuple[str, ...]] = {Torus: ("torus",), Blocks: ("links",), Tree: ("links",)}
 """Names of the pictures of each topology's links."""
 MARKS = (95, 99, 100)
 """Per cent of the rays."""

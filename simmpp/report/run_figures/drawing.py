@@ -18,6 +18,7 @@ from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
 from simmpp.report.run_figures.data import Motion
 from simmpp.report.run_figures.torus import draw_torus
+from simmpp.report.run_figures.tree import draw_tree
 
 BLUE, VERMILION, GREEN, _, ORANGE, *_ = (style["color"] for style in STYLES)
 ACTIVITIES = {"compute_ps": BLUE, "communication_ps": ORANGE, "waiting_ps": "#EDEDED"}
@@ -198,6 +199,7 @@ DRAWINGS: dict[str, Callable[[Figure, Motion], None]] = {
     "activity": _activity,
     "progress": _progress,
     "torus": draw_torus,
+    "links": draw_tree,
     "traffic": _traffic,
     "memory": _memory,
     "pixels": _pixels,

@@ -175,7 +175,7 @@ def _surfaces(
     """The materials of all libraries, and what of them is not as the file says."""
     surfaces: dict[str, Surface] = {}
     notes: list[str] = []
-    for names in statements.libraries:
+    for names in dict.fromkeys(statements.libraries):  # exporters repeat it for each object
         library = materials(names, statements.source.file.parent)
         surfaces = library.surfaces | surfaces
         notes += library.notes

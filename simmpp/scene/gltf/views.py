@@ -35,6 +35,9 @@ def cameras_in(document: Document, worlds: dict[int, Floats]) -> tuple[Cameras, 
         described = item(document.cameras, node.camera, "cameras")
         name = node.name or described.name or str(at)
         if described.perspective is None:
+            if described.type == "perspective":
+                problem = "expected perspective with its yfov"
+                raise SceneError(f"cameras[{node.camera}]: {problem}")
             notes.append(f"camera {shown(name)} is left out: {described.type}, not perspective")
             continue
         camera = _at_distance(seen_through(LOCAL, world))
@@ -68,16 +71,21 @@ def lights_in(
     The brightest of either is 1: their units (candela, lux) say nothing of one another.
     """
     lights, suns, spots = [], [], 0
+    notes: list[str] = []
     unknown: dict[str, None] = {}
     for kind, colour, world in _placed(document, worlds):
         if kind == "directional":
-            suns.append(Light(turned(TO_SUN, world), colour))
+            towards = turned(TO_SUN, world)
+            if any(towards):
+                suns.append(Light(towards, colour))
+            else:
+                notes.append("a directional light is left out: its node has no size to shine along")
         elif kind in ("point", "spot"):
             lights.append(Light(as_vector(world[:3, 3]), colour))
             spots += kind == "spot"
         else:
             unknown[kind] = None
-    notes = [f"lights of type {shown(kind)} are left out" for kind in unknown]
+    notes += [f"lights of type {shown(kind)} are left out" for kind in unknown]
     if spots:
         notes.append(f"{counted(spots, 'spot light')} without a cone: seen as a point light is")
     return _relative(lights), _relative(suns), tuple(notes)

@@ -95,6 +95,8 @@ SHORT_FORMS: list[tuple[str, object]] = [
     ("machine.test", {"sphere": "1 us"}),
     ("machine.pack", {"fixed": "1 us", "rays": {"bandwidth": "unlimited"}}),
     ("machine.link_bandwidth", "4.68 GB/s"),
+    ("machine.link_bandwidth", "100 Gb/s"),
+    ("machine.link_bandwidth", "10 Gbit/s"),
     ("machine.levels", {"node": {"size": 4, "gap": "1 us"}, "system": {"ports": 2}}),
     ("sweep", {"machine.levels.node.latency": ["1 us", 0], "processors": [4]}),
     ("machine.header_bytes", "64 B"),

@@ -13,6 +13,7 @@ import numba
 import numpy as np
 import pytest
 
+import simmpp
 from simmpp.common.errors import ConfigError
 from simmpp.policy import Policy, hook
 from simmpp.policy.hooks import address_of
@@ -105,6 +106,7 @@ def in_a_lambda(v: View) -> int:
 
 def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
     assert names_in(calls_another) >= {"known_load", "hops"}
+    assert compiled(calls_another, known_load=3, hops=4) == 7
     assert groups_read(calls_another) == LOADS | WAY
     assert groups_read(in_a_lambda) == RANDOM
     assert groups_read(None) == groups_read(POLICIES["ray"].send) == 0
@@ -128,3 +130,14 @@ def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
 def test_what_is_no_policy_is_refused(changes: dict[str, Any], expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
         Policy("own", **changes)
+
+
+def test_an_object_of_python_is_swept_in_this_process_alone() -> None:
+    own = Policy("own", send=lambda v: v.waiting, ask=lambda v: 1)
+    config = {"scene": "tetra:2", "picture": {"resolution": 8}, "processors": 2}
+    config["policy"] = ["object", own]
+    rows = simmpp.sweep(config).rows
+    assert set(rows["policy"]) == {"object", "own"}
+    assert rows["error"].isna().all()
+    with pytest.raises(ConfigError, match="policy 'own' is an object of Python"):
+        simmpp.sweep(config, workers=2)

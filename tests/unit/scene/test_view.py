@@ -62,7 +62,7 @@ def test_without_any_it_is_as_it_was() -> None:
     assert plain.camera.up == (0, 1, 0) and plain.camera.angle_degrees == 45
     assert (
         plain.origin.view
-        == "seen by a camera that sees everything, y up, lit by 2 lights beside it"
+        == "seen by a camera that sees everything, y up, lit by 2 lights around it all"
     )
     assert seen(up="z").camera.up == (0, 0, 1)
     assert seen(up="z").camera.eye != plain.camera.eye
@@ -330,3 +330,35 @@ def test_lights_of_a_file() -> None:
         "lights of type 'area' are left out",
         "1 spot light without a cone: seen as a point light is",
     )
+
+
+def test_a_sun_without_a_way_to_shine_is_left_out() -> None:
+    file = one_square()
+    file.json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional"}]}}
+    file.node(scale=[0, 0, 0], extensions={"KHR_lights_punctual": {"light": 0}})
+    scene = load_scene(file.write(Path("dark.glb")))
+    assert scene.origin.lights == "2 lights around it all"
+    assert scene.origin.notes == (
+        "a directional light is left out: its node has no size to shine along",
+    )
+
+
+def test_a_perspective_camera_needs_its_angle() -> None:
+    file = one_square()
+    file.add("cameras", type="perspective")
+    file.node(camera=0)
+    file.write(Path("blind.glb"))
+    problem = "blind.glb: cameras[0]: expected perspective with its yfov"
+    assert refusal(mesh="blind.glb") == problem
+
+
+def test_lights_are_said_to_be_around_the_scene_whatever_camera_sees_it() -> None:
+    for view in ({}, {"camera": {"eye": [9, 9, 9], "at": [0, 0, 0]}}):
+        assert seen(**view).origin.lights == "2 lights around it all"
+    assert load_scene("seen.glb").origin.view.endswith("of the file, lit by 2 lights around it all")
+
+
+def test_nff_is_no_mesh() -> None:
+    problem = "own.nff: NFF is a scene of its own, no mesh: expected it under scene.nff"
+    assert refusal(mesh="own.nff") == problem
+    assert refusal(parts=[{"mesh": "own.nff"}]) == problem

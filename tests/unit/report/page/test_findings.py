@@ -32,7 +32,7 @@ def test_neighbours_with_one_winner_are_one_line() -> None:
     assert found[0].makespan == "100 ps"
     assert found[0].lead == "2 to 3.02 times as long (object)"
     assert [w.sure for w in found] == [
-        "beyond the 95 % interval at each",
+        "at least 1.94 times as long (95 % interval)",
         "no difference that these seeds can show",
         "equal in every seed",
     ]
