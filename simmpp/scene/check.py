@@ -29,7 +29,8 @@ def _problems(scene: Scene) -> Iterator[tuple[str, str]]:
         yield f"the colour of light {number}", _problem_of_numbers(light.colour)
     yield "the background", _problem_of_numbers(scene.background)
     for number, obj in enumerate(scene.objects):
-        yield f"object {number}", _problem_of_object(obj, len(scene.materials))
+        if problem := _problem_of_object(obj, len(scene.materials)):
+            yield f"object {number}", problem
 
 
 def _problem_of_material(m: Material) -> str:

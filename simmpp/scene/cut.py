@@ -100,10 +100,8 @@ def _numbers(bits: Bits) -> Bits:
     """A number for each row (n, 3), the same for equal ones."""
     total = np.zeros(len(bits), np.uint64)
     for axis, factor in enumerate(ODD):
-        # Products carry upwards only, and the lower half of what was float32 is empty.
-        column = bits[:, axis] ^ (bits[:, axis] >> HALF)
-        total += column * factor
-        total ^= total >> HALF
+        total += bits[:, axis] * factor
+        total ^= total >> HALF  # products carry upwards only
         total *= factor
     return total
 
