@@ -10,7 +10,17 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
+from simmpp.machine.machine import (
+    LEVELS,
+    TOPOLOGY_NAMES,
+    TORUS,
+    UNLIMITED,
+    CopyCost,
+    FatTree,
+    Level,
+    Machine,
+    TestCost,
+)
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
@@ -194,6 +204,42 @@ def random_machine(rng: np.random.Generator) -> Machine:
     )
 
 
+def on_some_network(machine: Machine, seed: int) -> Machine:
+    """A torus as it is, or its PEs joined otherwise at costs of the same kind.
+
+    Draws from a stream of its own: what else is drawn of the seed stays what it is.
+    """
+    rng = np.random.default_rng((seed, 18))
+    topology = _pick(rng, TOPOLOGY_NAMES)
+    machine = replace(machine, port_gap_ps=int(_pick(rng, (0, machine.latency_ps))))
+    if topology == TORUS:
+        return machine
+    machine = replace(machine, topology=topology, shape=(machine.processors, 1, 1))
+    if topology == LEVELS:
+        return replace(machine, levels=_levels(rng, machine))
+    arity = int(rng.integers(2, 5))
+    ratios = [ratio for ratio in range(1, arity + 1) if arity % ratio == 0]
+    return replace(machine, fat_tree=FatTree(arity, int(rng.choice((0, 6))), _pick(rng, ratios)))
+
+
+def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
+    """1 to 3, of the machine's own times and bandwidths so that there are ties."""
+    times = (0, machine.latency_ps, machine.hop_latency_ps, machine.send_startup_ps)
+    rates = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    inside = range(int(rng.integers(0, 3)))
+    return tuple(
+        Level(
+            name=f"level {n}",
+            size=int(rng.integers(1, 4)) if n in inside else 0,
+            latency_ps=int(_pick(rng, times)),
+            bytes_per_s=int(_pick(rng, rates)),
+            gap_ps=int(_pick(rng, times)),
+            ports=int(rng.integers(1, 4)) if n > 0 else 1,
+        )
+        for n in (*inside, len(inside))
+    )
+
+
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
     """Any owners and pixels; a third of the cases have no replicas."""
     owners = rng.integers(0, processors, workload.n_objects).tolist()
@@ -244,7 +290,13 @@ def random_case(seed: int) -> Case:
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
+    machine = on_some_network(machine, seed)
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def on_torus(case: Case) -> Case:
+    """The case on a torus, if need be a ring."""
+    return replace(case, machine=replace(case.machine, topology=TORUS, levels=()))
 
 
 def cases() -> st.SearchStrategy[Case]:

@@ -32,7 +32,7 @@ def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
     rows = np.zeros(len(traffic), MESSAGE)
     for name in ("depart_ps", "source", "number", "destination"):
         rows[name] = [getattr(sent, name) for sent in traffic]
-    rows["payload_bytes"] = [sent.busy_ps for sent in traffic]
+    rows["payload_bytes"] = [sent.n_bytes for sent in traffic]
     state._put("messages", rows)
     state.ensure_heap()
     _drive(state.runs)

@@ -17,6 +17,7 @@ import csv
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from simmpp.common.compiled import njit
 from simmpp.engine.initial import new_state
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import State
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import UNLIMITED, Machine
 from simmpp.machine.presets import machine
 from simmpp.machine.torus import (
     LINKS,
@@ -36,7 +37,7 @@ from simmpp.machine.torus import (
     link_towards,
     port,
 )
-from simmpp.machine.transfer import transfer_ps
+from simmpp.machine.transfer import PS_PER_S, slower, transfer_ps
 from simmpp.placement.place import place
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
@@ -134,16 +135,17 @@ class Booked(SimpyRun):
         m = sent(self.state, row)
         ends = (m.source, m.destination)
         arrival_ps = book(
-            self._free_ps, self._shape, ends, m.depart_ps, self._latencies_ps, m.busy_ps
+            self._free_ps, self._shape, ends, m.depart_ps, self._latencies_ps, m.n_bytes
         )
         self.state.messages["arrival_ps"][row] = arrival_ps
         self._let_arrive(row)
 
 
 def sent(state: State, row: int) -> Sent:
-    """A message that has been packed."""
+    """A message that has been packed; its bytes are told as of a link of one per ps."""
     m = state.messages[row]
-    busy_ps = transfer_ps(int(m["payload_bytes"]) + state["header_bytes"], state["bytes_per_s"])
+    rate = slower(state["link_bytes_per_s"], state["injection_bytes_per_s"])
+    busy_ps = transfer_ps(int(m["payload_bytes"]) + state["header_bytes"], rate)
     ends = (int(m["source"]), int(m["number"]), int(m["destination"]))
     return Sent(int(m["depart_ps"]), *ends, busy_ps)
 
@@ -171,14 +173,15 @@ def timed(work: Callable[[], Times]) -> tuple[Times, float]:
 
 def by_processes(chosen: Machine, traffic: list[Sent]) -> Times:
     """Arrivals where each message is a process."""
-    found = HopByHop(chosen, traffic).arrivals_ps
+    a_byte_a_ps = replace(chosen, link_bytes_per_s=PS_PER_S, injection_bytes_per_s=UNLIMITED)
+    found = HopByHop(a_byte_a_ps, traffic).arrivals_ps
     return np.array([found[n] for n in range(len(traffic))])
 
 
 def alone_ps(chosen: Machine, traffic: list[Sent]) -> Times:
     """How long each message would take on an empty network."""
     ways = [hops(*chosen.shape, m.source, m.destination) for m in traffic]
-    busy_ps = np.array([m.busy_ps for m in traffic])
+    busy_ps = np.array([m.n_bytes for m in traffic])
     return chosen.latency_ps + chosen.hop_latency_ps * np.array(ways) + busy_ps
 
 
@@ -189,7 +192,7 @@ def row_of(scene: str, bandwidth: str, policy: str) -> Row:
     run.run()
     Booked(booking, chosen).run()
     traffic = sorted(run.traffic)
-    table = np.array([(m.depart_ps, m.source, m.destination, m.busy_ps) for m in traffic])
+    table = np.array([(m.depart_ps, m.source, m.destination, m.n_bytes) for m in traffic])
     latencies_ps = (chosen.latency_ps, chosen.hop_latency_ps)
     book_all(chosen.shape, table[:1], latencies_ps)  # compile
     exact = arrivals_ps(chosen, traffic)

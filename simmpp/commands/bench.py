@@ -58,13 +58,14 @@ def bench_command(
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()
-    with progress_of_sweep() as watcher:
+    with progress_of_sweep(options.call()) as watcher:
         outcome = bench(
             config,
             seeds=seeds,
             out=out,
             workers=workers or options.available_cores(),
             watcher=watcher,
+            call=options.call(),
         )
     _print(outcome.rungs)
     wrote(*outcome.files)

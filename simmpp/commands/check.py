@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -18,6 +19,7 @@ from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars,
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, write_csv
 from simmpp.common.folders import BASELINE, CHECK
+from simmpp.common.units import counted
 from simmpp.config.config import Config, load_config
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
 from simmpp.studies.check.baseline import (
@@ -118,6 +120,8 @@ def _compare(config: Config, baseline: Sweep, now: Sweep, obtained: Path, out: P
     rows = f"{len(now.results)} rows, {len(now.profits)} points"
     if moved:
         _print(moved, reasons(config, baseline, now))
+    for error, count in Counter(row["error"] for row in now.results if row["error"]).items():
+        notice(f"{counted(count, 'row')} failed: {error}")
     if out:
         _write(moved, baseline, now, obtained, out)
     say(f"check: {rows}: {f'{len(moved)} values moved' if moved else 'nothing moved'}")

@@ -92,7 +92,7 @@ def model_command(
         # Only --out draws, and matplotlib takes half a second.
         from simmpp.studies.nebel98.figure2 import write_figure2
 
-        machine = config.settings.machine.preset
+        machine = config.preset
         heading = f"Analytical model of Nebel 1998, {workload.name}, {machine}"
         wrote(*write_figure2(config, workload, rows, heading, out, ratios))
 
@@ -118,7 +118,7 @@ def _heading(config: Config, workload: Workload, method: str) -> str:
     return (
         f"{workload.name}: n0 = {workload.n_primaries} rays at the start, {len(rays.tests)} steps, "
         f"{rays.mean_tests:.0f} rays at a step in the mean\n"
-        f"machine {config.settings.machine.preset}, method {method}\n"
+        f"machine {config.preset}, method {method}\n"
     )
 
 

@@ -36,7 +36,7 @@ def reading_command(name: str | None) -> None:
 
 def print_reading(config: Config) -> None:
     """Say what the reading sets in a configuration, and whether its costs are left out."""
-    name, costs, preset = config.reading.name, config.reading.costs, config.settings.machine.preset
+    name, costs, preset = config.reading.name, config.reading.costs, config.preset
     if lines := config.lines_of_reading:
         say()
         say(_table(f"reading {name} sets", lines))

@@ -70,7 +70,7 @@ def reproduce_command(
     options.folder(out, "--out")
     announce_compilation()
     began_s = time.monotonic()
-    with progress_of_sweep() as watcher:
+    with progress_of_sweep(options.call()) as watcher:
         done = reproduce(
             out,
             readings=readings,
@@ -78,6 +78,7 @@ def reproduce_command(
             resolution=resolution,
             workers=workers or options.available_cores(),
             watcher=watcher,
+            call=options.call(),
         )
     _print(done)
     say(f"\n{out}: rows, figures and claims.csv, in {time.monotonic() - began_s:.0f} s")

@@ -91,10 +91,10 @@ def _facts(facts: dict[str, Any]) -> list[str]:
         f"up {_vector(camera['up'])}, {camera['angle_degrees']:g} degrees",
         facts["view"],
     ]
-    if facts["cameras"]:
+    if len(facts["cameras"]) > 1:
         names = [f"{number} ({name!r})" for number, name in enumerate(facts["cameras"])]
         rest = [f"... {len(names) - CAMERAS_SHOWN} more"] if len(names) > CAMERAS_SHOWN else []
-        lines.append(f"cameras of the file: {', '.join(names[:CAMERAS_SHOWN] + rest)}")
+        lines.append(f"cameras: {', '.join(names[:CAMERAS_SHOWN] + rest)}")
     lines += facts["notes"]
     if facts["n_objects"]:
         low, high = _vector(facts["box"]["low"]), _vector(facts["box"]["high"])

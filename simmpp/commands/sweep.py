@@ -56,7 +56,8 @@ def sweep_command(
     Writes results.csv, results.parquet, profits.csv, timings.csv and run.json. Object dataflow is
     run as the reference of the profits, if it is not named, and has its rows. With a tolerance,
     seeds are added until the profits of each point are known that well. The same command
-    continues what was interrupted, and tries failed points again. Exits with 1 if a point failed.
+    continues what was interrupted, and tries failed points again. More seeds, values or policies
+    add to what is in --out. Exits with 1 if a point failed.
     """
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")

@@ -103,7 +103,12 @@ def kind_of(folder: Path) -> str | None:
 
 
 def note_call(folder: Path, call: str) -> None:
-    """Note by which command the results here are made, in a folder that is claimed."""
+    """Note by which command the results here are made, in a folder that is claimed.
+
+    Nothing is noted of the empty text: who calls from Python may have no command.
+    """
+    if not call:
+        return
     write_text(f"{_mark(folder)[0]}\n{Path.cwd()}\n{call}\n", folder / MARK)
 
 

@@ -20,10 +20,15 @@ class Cited:
 
 
 def values_of(
-    node: object, cited: Cited, places: Mapping[KeyPath, Place], path: KeyPath = ()
+    node: object,
+    cited: Cited,
+    places: Mapping[KeyPath, Place],
+    path: KeyPath = (),
+    unsaid: str = "",
 ) -> Any:
     """``{value, source}`` leaves reduced to their values; the rest goes into ``cited``.
 
+    With ``unsaid`` a value may stand alone, and that is its source.
     Raises ConfigError, with its place, for what is neither such a leaf nor a mapping of them.
     """
     match node:
@@ -35,6 +40,11 @@ def values_of(
             return value
         case dict() if "value" not in node or not path:  # the whole is no leaf
             return {
-                key: values_of(child, cited, places, (*path, key)) for key, child in node.items()
+                key: values_of(child, cited, places, (*path, key), unsaid)
+                for key, child in node.items()
             }
+        case str() | int() | list() if unsaid and path:
+            key = ".".join(map(str, path))
+            cited.texts[key], cited.sources[key] = str(node), unsaid
+            return node
     raise misplaced(path, "expected {value: ..., source: ...}", places)

@@ -255,6 +255,13 @@ def _class_at(cls: type, path: KeyPath) -> type:
     return cls
 
 
+def is_by_name(cls: type, key: str) -> bool:
+    """Does a field hold a class of settings for each name that a user gives?"""
+    known = fields_of(cls)
+    options = get_args(known[key].annotation) if key in known else ()
+    return inner_class(cls, key) is not None and any(get_origin(each) is dict for each in options)
+
+
 def inner_class(cls: type, key: str) -> type | None:
     """The class of settings that a field holds, alone, optional or in a tuple."""
     known = fields_of(cls)

@@ -11,18 +11,22 @@ from typing import Any
 from pydantic_core import to_jsonable_python
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.places import KeyPath, Place, misplaced
-from simmpp.common.strict import is_line, structure
+from simmpp.common.places import KeyPath, misplaced
+from simmpp.common.strict import structure
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import read_yaml
 from simmpp.config.axes import Axis, axes_of
-from simmpp.config.defaults import READING, filled, lines_used
+from simmpp.config.beside import folder_of, nearest, own_machine, reading_of
+from simmpp.config.defaults import filled, lines_used
 from simmpp.config.overrides import Override, Places, override, refuse_both, set_key
 from simmpp.config.own_policies import with_files
-from simmpp.config.reading import Line, Reading, load_reading
-from simmpp.config.settings import DEFAULT_READING, Settings
-from simmpp.machine.machine import Machine
-from simmpp.machine.presets import machine, torus_shape
+from simmpp.config.reading import Line, Reading
+from simmpp.config.settings import Settings
+from simmpp.machine.layers import Layers
+from simmpp.machine.machine import TORUS, Machine
+from simmpp.machine.presets import Preset, layered
+from simmpp.machine.presets import machine as machine_of
+from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
@@ -50,6 +54,8 @@ class Config:
     """Where relative scene files are looked for."""
     reading: Reading = field(repr=False, compare=False)
     """What stands for what the configuration does not say."""
+    own_machine: Preset | None = field(default=None, repr=False)
+    """That of the key machine.file."""
     source: Source | None = field(default=None, repr=False, compare=False)
     """Kept where points of a sweep are still to be made of it."""
 
@@ -90,19 +96,32 @@ class Config:
         """What is traced."""
         return self.settings.picture
 
+    @property
+    def preset(self) -> str:
+        """The preset that the machine is, or is based on."""
+        return self.own_machine.based_on if self.own_machine else self.settings.machine.preset
+
     def machine_for(self, processors: int) -> Machine:
         """The machine with that many PEs.
 
         Raises ConfigError if the shape that the configuration gives has another number.
         """
-        own = self.settings.machine
-        costs = self.reading.costs.get(own.preset)
-        return machine(own.preset, own, processors, costs=costs)
+        costs, overrides = self.reading.costs.get(self.preset), self.settings.machine
+        return machine_of(self.preset, overrides, processors, costs=costs, own=self.own_machine)
+
+    @property
+    def layers(self) -> Layers:
+        """What the machine is made of."""
+        costs, overrides = self.reading.costs.get(self.preset), self.settings.machine
+        return layered(self.preset, overrides, costs, self.own_machine)
 
     @property
     def lines_of_reading(self) -> list[Line]:
         """What the reading sets here, of a configuration that keeps its source."""
-        return lines_used(self.kept_source.data, self.settings, self.reading)
+        given = self.settings.machine.flat()
+        if self.own_machine:
+            given |= self.own_machine.constants.flat()
+        return lines_used(self.kept_source.data, self.settings, self.reading, self.preset, given)
 
     @property
     def memory(self) -> Memory:
@@ -184,9 +203,14 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     ]
     point = changed(config, sorted(assignments, key=lambda assigned: assigned[0].count(".")))
     try:
-        torus_shape(point.processors, point.settings.machine.shape)
+        machine = point.machine_for(point.processors)
     except ConfigError as error:
-        raise misplaced(("machine", "shape"), error.problem, point.places) from None
+        key = ("machine", *error.where.split("."))
+        raise misplaced(key, error.problem, point.places) from None
+    method = point.settings.method
+    if METHODS[method].knows_torus_alone and machine.topology != TORUS:
+        problem = f"value {method!r}: expected {SIMULATE} where the topology is {machine.topology}"
+        raise misplaced(("method",), problem, point.places)
     return point
 
 
@@ -199,42 +223,19 @@ def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) 
     data = copy.deepcopy({key: value for key, value in source.data.items() if key != "sweep"})
     places = {path: place for path, place in source.places.items() if path[:1] != ("sweep",)}
     for key, value, path in assignments:
-        set_key(data, key, copy.deepcopy(value), places, _nearest(source.places, path))
+        set_key(data, key, copy.deepcopy(value), places, nearest(source.places, path))
     return _structured(Source(data, places, source.folder, source.may_run))
 
 
 def _structured(source: Source) -> Config:
     data, places, folder = source.data, source.places, source.folder
-    reading = _reading_of(data, places, folder)
+    reading = reading_of(data, places, folder)
     read = with_files(
-        data, places, lambda path: _folder_of([path], places, folder), may_run=source.may_run
+        data, places, lambda path: folder_of([path], places, folder), may_run=source.may_run
     )
     settings = structure(Settings, filled(read, reading), places)
-    scenes = _folder_of([("scene", key) for key in (*FILES, "parts")], places, folder)
-    return Config(settings, scenes, reading, source)
-
-
-def _reading_of(data: Mapping[str, Any], places: Places, folder: Path) -> Reading:
-    name = data.get(READING, DEFAULT_READING)
-    if not is_line(name):  # which the settings say in their words
-        return load_reading(DEFAULT_READING)
-    try:
-        return load_reading(name, _folder_of([(READING,)], places, folder))
-    except ConfigError as error:
-        if error.where:
-            raise
-        raise misplaced((READING,), error.problem, places) from None
-
-
-def _nearest(places: Places, path: KeyPath) -> Place:
-    known = (path[:n] for n in range(len(path), -1, -1))
-    return next((places[written] for written in known if written in places), ("", None))
-
-
-def _folder_of(paths: Iterable[KeyPath], places: Places, folder: Path) -> Path:
-    """Files named in a configuration lie beside it; those named by --set, here."""
-    wheres = [_nearest(places, path)[0] for path in paths]
-    return Path() if any(where.startswith("--set ") for where in wheres) else folder
+    scenes = folder_of([("scene", key) for key in (*FILES, "parts")], places, folder)
+    return Config(settings, scenes, reading, own_machine(settings.machine, places, folder), source)
 
 
 def described(config: Config) -> dict[str, Any]:

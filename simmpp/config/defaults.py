@@ -23,16 +23,24 @@ def filled(data: Mapping[str, Any], reading: Reading) -> dict[str, Any]:
     return _filled(data, reading)[0]
 
 
-def lines_used(data: Mapping[str, Any], settings: Settings, reading: Reading) -> list[Line]:
-    """Those of the reading's lines that say something that the configuration does not."""
-    used, machine = _filled(data, reading)[1], settings.machine
+def lines_used(
+    data: Mapping[str, Any],
+    settings: Settings,
+    reading: Reading,
+    preset: str,
+    constants: Mapping[str, int],
+) -> list[Line]:
+    """Those of the reading's lines that say something that the configuration does not.
+
+    ``constants`` are those that it gives to a machine that is this preset, or is based on it.
+    """
+    used = _filled(data, reading)[1]
     unnamed = {REFERENCE, CEILING} - {policy.name for policy in settings.policy}
     for name in unnamed & reading.policies.keys():  # run to be compared with
         used |= dict.fromkeys(f"{POLICY}.{name}.{key}" for key in reading.policies[name])
-    if costs := reading.costs.get(machine.preset):
-        own = machine.flat()
-        left = (costs.written(key) for key in costs.constants.flat() if key not in own)
-        used |= dict.fromkeys(f"{MACHINE}.{machine.preset}.{key}" for key in left)
+    if costs := reading.costs.get(preset):
+        left = (costs.written(key) for key in costs.constants.flat() if key not in constants)
+        used |= dict.fromkeys(f"{MACHINE}.{preset}.{key}" for key in left)
     return [line for line in reading.lines if any(meet(line.key, key) for key in used)]
 
 

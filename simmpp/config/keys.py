@@ -15,7 +15,15 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Expect, Short, expectation, fields_of, inner_class, mark_of
+from simmpp.common.strict import (
+    Expect,
+    Short,
+    expectation,
+    fields_of,
+    inner_class,
+    is_by_name,
+    mark_of,
+)
 from simmpp.common.units import shown
 from simmpp.config.overrides import key_path
 from simmpp.config.reading import MACHINE, POLICY, Reading, load_reading
@@ -24,6 +32,8 @@ from simmpp.machine.constants import CopiesConstants
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset
 
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
+NAME = "NAME"
+"""Stands in a key for any name of the user's."""
 HEADER = "| key | default | takes | unit | meaning |\n|---|---|---|---|---|\n"
 
 
@@ -61,7 +71,8 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
         meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
         yield Key(f"{prefix}{key}", default, expected, meaning, pointer, of_kind)
         if inner:
-            yield from _within(inner, f"{prefix}{key}.", of_one_kind=of_kind)
+            below = f"{prefix}{key}.{NAME}." if is_by_name(cls, key) else f"{prefix}{key}."
+            yield from _within(inner, below, of_one_kind=of_kind)
 
 
 def default_of(name: str, expected: Expect, value: Any, reading: Reading | None = None) -> str:

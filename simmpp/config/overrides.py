@@ -7,7 +7,7 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place, unknown
-from simmpp.common.strict import fields_of, inner_class
+from simmpp.common.strict import fields_of, inner_class, is_by_name
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import parse_yaml
 from simmpp.config.axes import SAME, meet
@@ -146,7 +146,11 @@ def key_path(key: str, place: Place = ("", None)) -> tuple[str, ...]:
         return ("sweep", key.removeprefix("sweep."))
     parts = tuple(key.split("."))
     model: Any = Settings
+    is_name = False  # the user's own, below which the same keys lie as below any other
     for depth, part in enumerate(parts):
+        if is_name:
+            is_name = False
+            continue
         if parts[:depth] == ("policy", "set") and depth == len(parts) - 1:
             return parts  # whatever the policy's file calls them
         known = sorted(fields_of(model)) if model else []
@@ -155,5 +159,5 @@ def key_path(key: str, place: Place = ("", None)) -> tuple[str, ...]:
             problem = unknown(part, known) if known else f"{within!r} has no keys of its own"
             prefix = f"{within}: " if within and known else ""
             raise ConfigError(prefix + problem, where=place[0], line=place[1])
-        model = inner_class(model, part)
+        is_name, model = is_by_name(model, part), inner_class(model, part)
     return parts

@@ -34,7 +34,7 @@ _FOLDER = files("simmpp") / "config" / "readings"
 _SUFFIXES = (".yaml", ".yml")
 DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
 _NOT_IN_ONE: dict[str, tuple[str, ...]] = {
-    MACHINE: ("shape", "contention"),  # choices, which no preset makes either
+    MACHINE: ("shape", "topology", "levels", "fat_tree", "contention"),  # no costs, but choices
     POLICY: ("name", "label"),
 }
 """Keys of a configuration that no reading sets."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
 from simmpp.config.axes import MOST_VALUES, NAME, POINTS, UNSWEPT
+from simmpp.config.keys import NAME as ANY
 from simmpp.config.keys import keys
 from simmpp.config.reading import MACHINE, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
@@ -57,16 +59,25 @@ def _sweep() -> dict[str, Any]:
         for name, key in keys().items()
         if name.split(".")[0] not in UNSWEPT
     }
+    named = {
+        f"^{re.escape(name).replace(ANY, '[A-Za-z0-9_-]+')}$": swept.pop(name)
+        for name in list(swept)
+        if f".{ANY}." in name
+    }
     point = {
         "type": "object",
         "properties": {NAME: {"type": "string", "minLength": 1}, **swept},
+        "patternProperties": named,
         "required": [NAME],
         "additionalProperties": False,
     }
     return {
         "type": "object",
         "properties": {name: _axis(values) for name, values in (swept | {POINTS: point}).items()},
-        "patternProperties": {",": _axis({"type": "array"})},
+        "patternProperties": {
+            ",": _axis({"type": "array"}),
+            **{pattern: _axis(values) for pattern, values in named.items()},
+        },
         "additionalProperties": False,
     }
 

@@ -87,6 +87,8 @@ DEFAULT_READING = "mixed"
 """What holds where a configuration names none."""
 _READING = "a reading of the package such as plain, or a file such as readings/own.yaml"
 ReadingName = Annotated[str, *only(is_line, Expect(_READING, {"type": "string", "minLength": 1}))]
+_FILE = "a file such as ours.yaml"
+FileName = Annotated[str, *only(is_line, Expect(_FILE, {"type": "string", "minLength": 1}))]
 Tolerance = Annotated[Fraction | None, parsed_by(_tolerance), Expect(_TOLERANCE, _SHARE)]
 
 
@@ -95,6 +97,15 @@ class MachineSettings(Constants):
 
     preset: Annotated[str, *one_of(*preset_names())] = DEFAULT_PRESET
     """A machine of the package (see `simmpp machine PRESET`)."""
+    file: FileName | None = None
+    """A machine of one's own: a YAML file with a description, based_on a preset, and its constants
+    (see `simmpp machine FILE`)."""
+
+    @model_validator(mode="after")
+    def _is_named_once(self) -> MachineSettings:
+        if self.file is not None and "preset" in self.model_fields_set:
+            raise mistake("file says itself what it is based on: expected no key preset beside it")
+        return self
 
 
 def long_policies(value: object) -> list[object]:

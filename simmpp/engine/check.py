@@ -11,6 +11,7 @@ from simmpp.common.errors import ConfigError, WorkloadError
 from simmpp.common.validate import MOST_COUNT, require_whole, require_word
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
+from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
 from simmpp.workload.check import is_cut
@@ -53,6 +54,7 @@ def _check_machine(machine: Machine) -> None:
     require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
+    topology_of(machine)  # looks itself
 
 
 def _check_placement(workload: Workload, machine: Machine, placement: Placement) -> None:

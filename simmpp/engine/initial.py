@@ -155,11 +155,9 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 
 
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
-    limits = [b for b in (machine.link_bytes_per_s, machine.injection_bytes_per_s) if b]
     return {
         "processors": machine.processors,
         "n_objects": workload.n_objects,
-        "bytes_per_s": min(limits, default=0),
         "contends": machine.contention == LINKS,
         "transient": placement.transient,
         "row_bytes": row_bytes(placement, workload.n_objects),

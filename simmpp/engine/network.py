@@ -6,7 +6,14 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import free_ps, messages, topology
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.topology import hops, next_link, port
+from simmpp.machine.topology import (
+    bytes_per_s,
+    enter,
+    held_ps,
+    latency_ps,
+    next_link,
+    port,
+)
 from simmpp.machine.transfer import transfer_ps
 
 
@@ -23,8 +30,8 @@ def depart(s: Run, m: Row) -> None:
 @kernel
 def flight_ps(s: Run, source: int, destination: int, n_bytes: int) -> int:
     """How long a message of that many bytes, with its header, travels if nothing is in its way."""
-    n_hops = hops(topology(s), source, destination)
-    return s.latency_ps + n_hops * s.hop_latency_ps + transfer_ps(n_bytes, s.bytes_per_s)
+    rate = bytes_per_s(topology(s), source, destination)
+    return latency_ps(topology(s), source, destination) + transfer_ps(n_bytes, rate)
 
 
 @kernel
@@ -34,9 +41,12 @@ def inject(s: Run, m: Row) -> None:
     So it can be taken now, before the clock says so. Any other port or link is taken when the head
     gets there: a message that departs later may be there sooner.
     """
-    m.busy_ps = transfer_ps(m.payload_bytes + s.header_bytes, s.bytes_per_s)
-    m.at, m.arrival_ps = m.source, NONE
-    m.head_ps = _occupy(s, port(topology(s), m.source, 0), m.depart_ps, m.busy_ps) + s.latency_ps
+    n_bytes = m.payload_bytes + s.header_bytes
+    m.busy_ps = transfer_ps(n_bytes, bytes_per_s(topology(s), m.source, m.destination))
+    held = held_ps(topology(s), n_bytes, m.busy_ps)
+    m.at, behind_ps = enter(topology(s), m.source, m.destination)
+    m.arrival_ps = NONE
+    m.head_ps = _occupy(s, port(topology(s), m.source, 0), m.depart_ps, held) + behind_ps
 
 
 @kernel
@@ -46,11 +56,15 @@ def move_head(s: Run, message: int) -> int:
     Returns when the head is at the next one, or when the message arrives, which is known then.
     """
     m = messages(s)[message]
+    n_bytes = m.payload_bytes + s.header_bytes
     if m.at == m.destination:
-        m.arrival_ps = _occupy(s, port(topology(s), m.at, 1), m.head_ps, m.busy_ps) + m.busy_ps
+        held = held_ps(topology(s), n_bytes, m.busy_ps)
+        m.arrival_ps = _occupy(s, port(topology(s), m.at, 1), m.head_ps, held) + m.busy_ps
         return m.arrival_ps
-    link, m.at = next_link(topology(s), m.at, m.destination)
-    m.head_ps = _occupy(s, link, m.head_ps, m.busy_ps) + s.hop_latency_ps
+    link, m.at, held, behind_ps = next_link(
+        topology(s), m.source, m.at, m.destination, n_bytes, m.busy_ps
+    )
+    m.head_ps = _occupy(s, link, m.head_ps, held) + behind_ps
     return m.head_ps
 
 

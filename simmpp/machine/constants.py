@@ -5,6 +5,7 @@ All follow from the fields of ``Machine``, where each is declared; here any numb
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache
@@ -15,16 +16,27 @@ from pydantic import Field, create_model
 from simmpp.common.documented import fields_below
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import TIME
-from simmpp.common.strict import Short, Strict, parsed_by
-from simmpp.common.units import A_TIME, picoseconds
-from simmpp.machine.machine import Copies, CopyCost, Machine, TestCost
+from simmpp.common.strict import Expect, Short, Strict, parsed_by
+from simmpp.common.units import A_TIME, picoseconds, shown
+from simmpp.machine.machine import (
+    MOST_LEVELS,
+    Copies,
+    CopyCost,
+    FatTree,
+    Level,
+    Levels,
+    Machine,
+    TestCost,
+)
 from simmpp.machine.messages import MESSAGE_KINDS
 
 OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
 """In the order of MESSAGE_KINDS."""
-_WORDS = [key for key, hint in get_type_hints(Machine).items() if get_origin(hint) is Literal]
+_WORDS = ("topology", "contention")
+_NAME = re.compile("[A-Za-z][A-Za-z0-9_-]{0,30}")
+_LEVELS = "the blocks from the inside out by a name for each, such as node, group, system"
 
 
 def key_of(field: str) -> str:
@@ -41,6 +53,16 @@ def long_test(value: object) -> object:
     except ConfigError as error:
         raise ConfigError(f"{error.problem}, or a mapping by kind of primitive") from None
     return dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value) | {"per_triangle": 0}
+
+
+def named_levels(value: object) -> object:
+    """Levels below names that can be part of a key."""
+    if not isinstance(value, dict) or not 0 < len(value) <= MOST_LEVELS:
+        raise ConfigError(f"value {shown(value)}: expected {_LEVELS}, 1 to {MOST_LEVELS}")
+    for name in value:
+        if not isinstance(name, str) or not _NAME.fullmatch(name):
+            raise ConfigError(f"name {shown(name)}: expected letters, digits, - and _")
+    return value
 
 
 # --- models of which every key may be left out, made of the classes of constants ---
@@ -75,12 +97,21 @@ _of_kinds: dict[str, Any] = {
 }
 CopiesConstants: Any = create_model("CopiesConstants", __base__=CopyConstants, **_of_kinds)
 TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_fields(TestCost, {}))
+FatTreeConstants: Any = create_model(
+    "FatTreeConstants", __base__=Strict, **optional_fields(FatTree, {})
+)
+LevelConstants: Any = create_model("LevelConstants", __base__=Strict, **optional_fields(Level, {}))
 _NESTED = {
     Copies: (CopiesConstants, CopiesConstants()),
     TestCost: (
         Annotated[TestConstants, parsed_by(long_test), Short(A_TIME, TIME)],
         TestConstants(),
     ),
+    Levels: (
+        Annotated[dict[str, LevelConstants] | None, parsed_by(named_levels), Expect(_LEVELS)],
+        None,
+    ),
+    FatTree: (FatTreeConstants | None, None),
 }
 _All: Any = create_model("_All", __base__=Strict, **optional_fields(Machine, _NESTED))
 
@@ -101,11 +132,14 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
                     given |= _numbers(getattr(value, kind), f"{key}.{kind}.")
             elif isinstance(value, Strict):
                 given |= _numbers(value, f"{key}.")
+            elif isinstance(value, dict):
+                for name, level in value.items():
+                    given |= _numbers(level, f"{key}.{name}.")
         return given
 
     def words(self) -> dict[str, str]:
-        """The choices, which no preset makes: ``contention``."""
-        return {key: value for key, value in self if key in _WORDS}
+        """The choices that are made: ``contention``, ``topology``."""
+        return {key: value for key, value in self if key in _WORDS and value is not None}
 
 
 def _numbers(model: Strict, prefix: str) -> dict[str, int]:
@@ -127,8 +161,8 @@ def _arguments(cls: Any, numbers: Mapping[str, int], prefix: str) -> dict[str, A
         elif hint == Copies:
             kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in MESSAGE_KINDS)
             arguments[name] = tuple(CopyCost(**kind) for kind in kinds)
-        elif hint is TestCost:
-            arguments[name] = TestCost(**_arguments(TestCost, numbers, f"{key}."))
+        elif hint in (TestCost, FatTree):
+            arguments[name] = hint(**_arguments(hint, numbers, f"{key}."))
     return arguments
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import Machine
 from simmpp.machine.topology import topology_of
-from simmpp.machine.transfer import PS_PER_S
+from simmpp.machine.transfer import PS_PER_S, slower
 from simmpp.workload.workload import Workload
 
 CLOCK_LIMIT_PS = 1 << 62
@@ -74,12 +74,10 @@ def _longest_dispatch_ps(workload: Workload, machine: Machine) -> int:
 
 def _longest_flight_ps(workload: Workload, machine: Machine) -> int:
     """The largest message from one end of the network to the other."""
-    links = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
-    rates = [rate for rate in links if rate]
-    n_bytes = _largest_payload_bytes(workload, machine) + machine.header_bytes
-    transfer_ps = n_bytes * PS_PER_S // min(rates) if rates else 0
-    hops_ps = topology_of(machine).diameter * machine.hop_latency_ps
-    return machine.latency_ps + hops_ps + transfer_ps
+    topology, n_bytes = topology_of(machine), _largest_payload_bytes(workload, machine)
+    rate = slower(*topology.rates)
+    transfer_ps = (n_bytes + machine.header_bytes) * PS_PER_S // rate if rate else 0
+    return topology.longest_ps + transfer_ps
 
 
 def beyond_the_clock() -> ConfigError:

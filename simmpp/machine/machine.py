@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.documented import documented
 from simmpp.common.quantities import Bandwidth, Size, Time
-from simmpp.common.strict import Expect, integer, only
+from simmpp.common.strict import Expect, integer, one_of, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
@@ -39,6 +39,45 @@ _THREE = {"type": "array", "items": _SIDES, "minItems": 3, "maxItems": 3}
 Shape = Annotated[tuple[int, int, int], *only(is_shape, Expect(_SHAPE, _THREE, "PEs"))]
 
 
+TORUS, LEVELS, FAT_TREE = TOPOLOGY_NAMES = ("torus", "levels", "fat-tree")
+MOST_LEVELS = 16
+
+
+@documented
+@dataclass(frozen=True)
+class Level:
+    """Blocks of PEs in larger blocks: what a message costs between two that are in one block."""
+
+    name: str
+    """The user's."""
+    size: Annotated[int, *integer(1, MOST_PROCESSORS, "blocks")] = 0
+    """Blocks of the level below that one of its blocks has (PEs, of the innermost level); the
+    outermost has all there are when not given."""
+    latency_ps: Time = 0
+    """Of a message that goes no further out, the machine's when not given."""
+    bytes_per_s: Bandwidth = UNLIMITED
+    """Of such a message, and of each port, the lower of the machine's two when not given."""
+    gap_ps: Time = 0
+    """With contention: a message keeps a port of the level busy for that long at least, the
+    machine's when not given."""
+    ports: Annotated[int, *integer(1, MOST_PROCESSORS, "ports")] = 1
+    """With contention: ways out, and in, of each block of the level below; its PE i has number i
+    mod ports. A PE has one."""
+
+
+@documented
+@dataclass(frozen=True)
+class FatTree:
+    """How many switches of which kind a fat-tree has."""
+
+    arity: Annotated[int, *integer(2, MOST_PROCESSORS, "links")] = 0
+    """Links down from each switch."""
+    levels: Annotated[int, *integer(1, MOST_LEVELS, "levels")] = 0
+    """Of switches, as few as join all PEs when not given."""
+    oversubscription: Annotated[int, *integer(1, MOST_PROCESSORS)] = 1
+    """Links down for each link up, at every switch below the top; a divisor of the arity."""
+
+
 @documented
 @dataclass(frozen=True)
 class CopyCost:
@@ -52,6 +91,8 @@ class CopyCost:
 
 Copies = tuple[CopyCost, CopyCost, CopyCost, CopyCost]
 """Of each kind of message: request, object, rays, load."""
+Levels = tuple[Level, ...]
+"""The innermost first."""
 
 
 @documented
@@ -94,7 +135,8 @@ class Machine:
     name: str
     """That of its preset."""
     shape: Shape
-    """PEs along x, y, z of the torus, the most cubic when not given; PE k = x + X (y + Y z)."""
+    """PEs along x, y, z of the torus, the most cubic when not given; PE k = x + X (y + Y z). Other
+    topologies have none."""
     send_startup_ps: Time
     """Sender's cost of any message."""
     receive_startup_ps: Time
@@ -125,6 +167,15 @@ class Machine:
     """Set-up and shading of one ray."""
     quantum: Annotated[int, *integer(1, 2**31 - 1, "tests")]
     """Tests that a PE computes at most before it looks into its inbox."""
+    topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
+    """How PEs are joined: the way that `levels` or `fat_tree` says where one is given, else the
+    preset's."""
+    levels: Levels = ()
+    """Blocks of PEs in larger blocks, the innermost first, each by a name of one's own."""
+    fat_tree: FatTree = FatTree()
+    """Switches of the fat-tree; its links have the machine's bandwidth and hop latency."""
+    port_gap_ps: Time = 0
+    """With contention: a message keeps the ports of its PEs busy for that long at least."""
     contention: Literal["none", "links"] = "none"
     """What messages wait for: nothing, or links and ports that serve one at a time."""
     sources: dict[str, str] = field(default_factory=dict, compare=False)

@@ -1,28 +1,37 @@
-"""Machines that come with the package: constants with the source of each, made into a Machine."""
+"""Machines of the package and of one's own: constants with the source of each, made into a Machine.
+
+A preset is a YAML file of the package. One's own machine is such a file as well, ``based_on`` a
+preset, whose constants it has where it says nothing; its values need no source.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import as_file, files
 from math import prod
+from os.path import isfile
+from pathlib import Path
 from types import NoneType
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import KeyPath, Place
 from simmpp.common.sourced import Cited, values_of
-from simmpp.common.strict import structure
+from simmpp.common.strict import in_words, structure
 from simmpp.common.units import shown
 from simmpp.common.validate import require_kind, require_whole, require_word
-from simmpp.common.yamlfile import Document, read_yaml
+from simmpp.common.yamlfile import Document, parse_yaml, read_yaml, yaml_text
 from simmpp.machine.constants import Constants, machine_of
-from simmpp.machine.machine import MOST_PROCESSORS, Machine, Shape, is_shape
+from simmpp.machine.layers import Layers
+from simmpp.machine.machine import MOST_PROCESSORS, TORUS, Machine, Shape, is_shape
+from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import default_shape
 
 _FOLDER = files("simmpp") / "machine" / "presets"
-OVERRIDDEN = "set by the user"
+OVERRIDDEN = "set by you"
 DEFAULT_PRESET = "t3e"
+SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -36,6 +45,8 @@ class Preset:
     """Each constant as the preset's file writes it, with its unit, by dotted key."""
     sources: dict[str, str]
     """A citation for each constant, or ESTIMATE and the range; by the same keys."""
+    based_on: str = ""
+    """The preset below it, if it is a machine of one's own."""
 
     def text(self, key: str, write: Callable[[int], str]) -> str:
         """A constant with its unit, written by ``write`` where the file has it for all messages."""
@@ -73,19 +84,41 @@ def load_preset(name: str) -> Preset:
     return _preset(name, document)
 
 
-def _preset(name: str, document: Document) -> Preset:
+def load_own(name: str, folder: Path = Path()) -> Preset:
+    """Read a machine of one's own, from a file that is looked for from ``folder``.
+
+    Raises ConfigError if there is none, or for what is wrong in it, with file and line.
+    """
+    path = folder / name
+    if not name.endswith(SUFFIXES) or not isfile(path):
+        raise ConfigError(f"value {shown(name)}: expected a file .yaml that exists")
+    return _own(path.stem, yaml_text(path), str(path))
+
+
+@lru_cache(maxsize=32)  # every point of a sweep asks again
+def _own(name: str, text: str, where: str) -> Preset:
+    return _preset(name, parse_yaml(text, where), own=True)
+
+
+def _preset(name: str, document: Document, *, own: bool = False) -> Preset:
     places: dict[KeyPath, Place] = {
         path[1:]: (document.where, line)
         for path, line in document.lines.items()
         if path[:1] == ("constants",)
     }
-    data = document.data
-    if not isinstance(data, dict) or set(data) != {"description", "constants"}:
-        raise ConfigError("expected the keys description, constants", where=document.where)
+    data, keys = document.data, ["description", *(["based_on"] if own else []), "constants"]
+    if not isinstance(data, dict) or set(data) != set(keys):
+        raise ConfigError(f"expected the keys {', '.join(keys)}", where=document.where)
+    base = data.get("based_on", "")
+    if own and base not in preset_names():
+        problem = f"based_on: value {shown(base)}: expected {in_words(tuple(preset_names()))}"
+        line = document.lines.get(("based_on",))
+        raise ConfigError(problem, where=document.where, line=line)
     cited = Cited()
-    constants = structure(Constants, values_of(data["constants"], cited, places), places)
+    values = values_of(data["constants"], cited, places, unsaid=OVERRIDDEN if own else "")
+    constants = structure(Constants, values, places)
     description = " ".join(str(data["description"]).split())
-    return Preset(name, description, constants, cited.texts, cited.sources)
+    return Preset(name, description, constants, cited.texts, cited.sources, base)
 
 
 def machine(
@@ -94,36 +127,52 @@ def machine(
     processors: int = 64,
     shape: Shape | None = None,
     costs: Preset | None = None,
+    own: Preset | None = None,
 ) -> Machine:
     """A preset's machine of ``processors`` PEs, with some constants overridden.
 
     ``overrides`` has the keys of a configuration's ``machine``: ``{"send_startup": "5 us"}``;
-    ``costs`` are some constants that come before them, with sources of their own. The torus is
-    ``shape``, else the overrides' shape, else the most cubic one.
-    Raises ConfigError for a wrong constant or a torus that doesn't hold ``processors`` PEs.
+    ``costs``, of a reading, and ``own``, of a file, are constants between preset and overrides,
+    with sources of their own. The torus is ``shape``, else the overrides' shape, else the most
+    cubic one.
+    Raises ConfigError for a wrong constant or a network that doesn't hold ``processors`` PEs.
     """
     require_word("preset", preset, preset_names())
     require_kind("overrides", overrides, Mapping, Constants, NoneType)
     if not isinstance(overrides, Constants):
         overrides = structure(Constants, dict(overrides or {}), {})
-    chosen = load_preset(preset)
-    changed = overrides.flat()
-    numbers: dict[str, int] = {}
-    sources: dict[str, str] = {}
-    for layer in (chosen, costs) if costs else (chosen,):
-        numbers |= layer.constants.flat()
-        sources |= {key: layer.source(key) for key in layer.constants.flat()}
-    return machine_of(
-        numbers | changed,
-        name=preset,
-        shape=torus_shape(processors, overrides.shape if shape is None else shape),
-        **overrides.words(),
-        sources=sources | dict.fromkeys(changed, OVERRIDDEN),
+    layers = layered(preset, overrides, costs, own)
+    made = machine_of(
+        layers.numbers,
+        name=own.name if own else preset,
+        shape=_shape(processors, overrides.shape if shape is None else shape, layers.words),
+        levels=layers.levels(),
+        **layers.words,
+        sources=layers.sources,
     )
+    topology_of(made)  # refuses what can't be
+    return made
 
 
-def torus_shape(processors: int, shape: Shape | None) -> Shape:
-    """``shape`` if it holds ``processors`` PEs; the most cubic torus where it is None.
+def layered(
+    preset: str, overrides: Constants, costs: Preset | None = None, own: Preset | None = None
+) -> Layers:
+    """What all that a machine is made of says together, as in ``machine``.
+
+    Raises ConfigError for what is set in vain.
+    """
+    layers = Layers()
+    for layer in (load_preset(preset), costs, own):
+        if layer is not None:
+            layers.put(layer.constants, layer.source)
+    layers.put(overrides, lambda key: OVERRIDDEN)
+    for constants in (*([own.constants] if own else []), overrides):
+        layers.refuse_strangers(constants)
+    return layers
+
+
+def _shape(processors: int, shape: Shape | None, words: Mapping[str, str]) -> Shape:
+    """``shape`` if it holds ``processors`` PEs, the most cubic torus where it is None.
 
     Raises ConfigError otherwise.
     """
@@ -132,4 +181,6 @@ def torus_shape(processors: int, shape: Shape | None) -> Shape:
         value = list(shape) if isinstance(shape, tuple) else shape
         expected = f"three integers whose product is processors = {processors}"
         raise ConfigError(f"value {shown(value)}: expected {expected}", where="shape")
+    if words["topology"] != TORUS:
+        return processors, 1, 1  # all in a row: a shape is the torus' alone
     return shape or default_shape(processors)

@@ -7,7 +7,8 @@ routing in a high performance 3D torus, Hot Interconnects IV; its adaptive routi
 
 The head of a message takes its source's injection port, the directed links of dimension-order
 routing and its destination's ejection port. Each serves whoever comes first: the head waits until
-it is free, then it is busy for the time of the message's bytes, while the head goes on. From the
+it is free, then it is busy for the time of the message's bytes (a port at least for the machine's
+gap between messages), while the head goes on. From the
 injection port to the first link the head takes the machine's latency (as every message pays it once
 between ports, anywhere else would give the same arrivals), over each link the hop latency. Heads
 that come at the same instant are served by (source, send number).
@@ -22,6 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
+from simmpp.machine.machine import Machine
+from simmpp.machine.transfer import slower
 
 CONTENTIONS = NO_CONTENTION, LINKS = ("none", "links")
 """What messages wait for: nothing, or links and ports."""
@@ -39,6 +42,25 @@ class Torus:
 
     sizes: tuple[int, int, int]
     """PEs along x, y, z; PE k = x + X (y + Y z)."""
+    latency_ps: int
+    """For each message."""
+    hop_latency_ps: int
+    """For each link."""
+    bytes_per_s: int
+    """Of links and ports, the slower of both."""
+    gap_ps: int
+    """For which a port is busy at least."""
+
+    @classmethod
+    def of(cls, machine: Machine) -> Torus:
+        """That of a machine."""
+        return cls(
+            machine.shape,
+            machine.latency_ps,
+            machine.hop_latency_ps,
+            slower(machine.link_bytes_per_s, machine.injection_bytes_per_s),
+            machine.port_gap_ps,
+        )
 
     def __str__(self) -> str:
         return " x ".join(map(str, self.sizes))
@@ -57,6 +79,21 @@ class Torus:
     def diameter(self) -> int:
         """Most links between two PEs."""
         return sum(size // 2 for size in self.sizes)
+
+    @property
+    def longest_ps(self) -> int:
+        """Latency between the two PEs that are farthest from each other."""
+        return self.latency_ps + self.diameter * self.hop_latency_ps
+
+    @property
+    def rates(self) -> list[int]:
+        """Bandwidths that messages may have."""
+        return [self.bytes_per_s]
+
+    @property
+    def numbers(self) -> list[int]:
+        """What the compiled functions know."""
+        return [*self.sizes, self.latency_ps, self.hop_latency_ps, self.bytes_per_s, self.gap_ps]
 
     def by_link(self, of_rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """What there is of each row by PE and DIRECTIONS: (nb, 6), without the ports."""

@@ -32,3 +32,8 @@ def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
         whole = whole * 1000 + rest // bytes_per_s
         rest %= bytes_per_s
     return whole + (1 if rest >= bytes_per_s - rest else 0)
+
+
+def slower(*rates: int) -> int:
+    """The lowest of bandwidths, of which 0 is unlimited."""
+    return min((rate for rate in rates if rate), default=0)

@@ -25,6 +25,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.machine.limits import CLOCK_LIMIT_PS, beyond_the_clock, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
+from simmpp.machine.topology import require_torus
 from simmpp.machine.transfer import transfer_ps
 from simmpp.model.lockstep import steps_of
 from simmpp.model.synchronous_step import World, needs, new_step, next_rays, object_step, ray_step
@@ -60,8 +61,10 @@ def synchronous(
 ) -> SynchronousResult:
     """Run a workload step by step.
 
-    Raises ConfigError for more than MOST_PROCESSORS, or if tests and messages may exceed the clock.
+    Raises ConfigError for more than MOST_PROCESSORS, off the torus, or if tests and messages may
+    exceed the clock.
     """
+    require_torus(machine)
     _check_processors(machine.processors)
     _check_clock(workload, machine, dataflow)
     world, nb = _world(workload, machine, placement, waits), machine.processors

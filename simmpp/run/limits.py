@@ -9,7 +9,8 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
 - *latency*: nb x (makespan - busy time of the busiest PE), when even that one waits: for messages
-  on their way, and for those who answer. Of that, the part that flights are latency, with one hop.
+  on their way, and for those who answer. Of that, the part that flights are latency, with one hop;
+  flights between levels are those of the outermost.
 - *bandwidth*: the rest of that, the part that flights are bytes on a link.
 
 Busy is who computes or communicates. The last four are what PEs wait; where only sums over PEs are
@@ -54,7 +55,7 @@ class MessageCosts:
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
-    """Latency, and one hop."""
+    """Latency, and one hop; of levels that of the outermost."""
     bytes_per_s: int
     """0: unlimited."""
 
@@ -62,11 +63,14 @@ class MessageCosts:
     def of(cls, constants: Mapping[str, Any]) -> MessageCosts:
         """From a machine's fields, as ``run.json`` has them; KeyError where these were others."""
         rates = [constants["link_bytes_per_s"], constants["injection_bytes_per_s"]]
+        flight_ps = constants["latency_ps"] + constants["hop_latency_ps"]
+        if levels := constants.get("levels"):
+            rates, flight_ps = [levels[-1]["bytes_per_s"]], levels[-1]["latency_ps"]
         copies = zip(constants["pack"], constants["unpack"], strict=True)
         return cls(
             constants["send_startup_ps"] + constants["receive_startup_ps"],
             tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies),
-            constants["latency_ps"] + constants["hop_latency_ps"],
+            flight_ps,
             min(filter(None, rates), default=0),
         )
 

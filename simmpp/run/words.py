@@ -26,7 +26,12 @@ ACTIONS = {
 }
 """What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}
-CAUSES = {"scene": "the scene", "processors": "the number of PEs", "fraction": "the memory"}
+CAUSES = {
+    "scene": "the scene",
+    "processors": "the number of PEs",
+    "fraction": "the memory",
+    "folder": "the folder",
+}
 """Keys as what decides."""
 CLOSE = 1.1
 """Ratios up to here are told as percentages."""

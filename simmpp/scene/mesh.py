@@ -26,10 +26,9 @@ from simmpp.scene.node import Content, Node, are_usable, placed, seen_through, t
 from simmpp.scene.packed import kind_of, read_whole
 from simmpp.scene.parts import PartSettings
 from simmpp.scene.scene import SKY_BLUE, Floats, Light, Material, MeshPart, Origin, Scene
-from simmpp.scene.view import AXES, of_file
+from simmpp.scene.view import AXES, EVERYTHING, FRAMED, of_file
 
 Reader = Callable[[bytes, Path], Content]
-FRAMED = "a camera that sees everything"
 
 
 def _gltf(data: bytes, file: Path) -> Content:
@@ -116,7 +115,8 @@ def _seen(
     lamps = [light for content in contents for light in content.lights]
     lamps += [far_off(sun, bounds) for content in contents for sun in content.suns]
     said, lit = f"{FRAMED}, {axis} up", f"{counted(len(lights), 'light')} beside it"
-    if cameras:
+    cameras = (*cameras, (EVERYTHING, camera))
+    if len(cameras) > 1:
         said, camera = of_file(cameras[0][0]), cameras[0][1]
     if lamps:
         lit, lights = f"{counted(len(lamps), 'light')} of the file", tuple(lamps)

@@ -101,7 +101,7 @@ class Origin:
     camera: str = "its own camera"
     lights: str = "its own lights"
     cameras: tuple[tuple[str, Camera], ...] = ()
-    """Those that the file has, with their names."""
+    """Those that can be asked for, with their names."""
     up: Vector | None = None
     """What is upwards in its coordinates, if that is known."""
     notes: tuple[str, ...] = ()

@@ -17,6 +17,8 @@ from simmpp.scene.scene import Camera, Light, Scene, Vector
 AXES: dict[str, Vector] = {"y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 """What ``up`` names."""
 MOST_CAMERAS = 2**31
+EVERYTHING, FRAMED = "everything", "a camera that sees everything"
+"""The name of what sees a mesh where its file has no camera, and what is said of it."""
 A_CAMERA = "the name or number of a camera of the file"
 _ANGLE = "an angle above 0 and below 180"
 _OPEN = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180}
@@ -67,7 +69,8 @@ class CameraSettings(Strict):
     """A pinhole camera: one of the file, or parts of one; the rest stays as the scene has it."""
 
     name: Annotated[str | int, *only(_is_name, Expect(A_CAMERA))] | None = None
-    """One that the file has: by its name, or by its number from 0 (`simmpp scene` lists them)."""
+    """One that the file has: by its name, or by its number from 0 (`simmpp scene` lists them);
+    `everything` is the one that shows all of a mesh."""
     eye: Annotated[Vector, *three("[0, 1.5, -4]")] | None = None
     """Where it stands, in the coordinates of the file."""
     at: Annotated[Vector, *three("[0, 1, 0]")] | None = None
@@ -154,14 +157,17 @@ def _camera(scene: Scene, view: View) -> tuple[str, Camera]:
     up = camera.up
     if own.eye is not None or own.at is not None:
         up = scene.origin.up or up  # seen from elsewhere, how it was held means nothing
-    up = own.up or (AXES[view.up] if view.up else up)
+    if view.up and own.up is None:
+        up = AXES[view.up]
+        said = f"{said.removesuffix(f', {view.up} up')}, {view.up} up"
+    up = own.up or up
     eye, at, angle = own.eye or camera.eye, own.at or camera.at, own.angle or camera.angle_degrees
     return said, replace(camera, eye=eye, at=at, up=up, angle_degrees=float(angle))
 
 
 def of_file(name: str) -> str:
-    """What is said of a camera that a file has."""
-    return f"camera {name!r} of the file"
+    """What is said of a camera that is named."""
+    return FRAMED if name == EVERYTHING else f"camera {shown(name)} of the file"
 
 
 def _named(scene: Scene, wanted: str | int) -> tuple[str, Camera]:
@@ -174,5 +180,5 @@ def _named(scene: Scene, wanted: str | int) -> tuple[str, Camera]:
     if found:
         return found[0]
     known = ", ".join(f"{number} ({shown(name)})" for number, (name, _) in enumerate(cameras[:10]))
-    problem = f"the file has no camera {shown(wanted)}: expected {known or 'none, it has none'}"
+    problem = f"there is no camera {shown(wanted)}: expected {known or 'parts of its only one'}"
     raise SceneError(problem, where=scene.name)

@@ -11,13 +11,12 @@ import copy
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 from simmpp.config.axes import POINTS, SAME, Choice
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.provenance import difference
-from simmpp.sweeps.task import canonical
+from simmpp.sweeps.task import canonical, decides
 from simmpp.workload.picture import Picture
 
 GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
@@ -25,6 +24,8 @@ GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
 SWEPT, NAMES = "swept", "names"
 """Parts of an identity that grow: keys that are axes, and the meanings that each name has."""
 
+FORMAT = "format"
+"""The part that says how all others are written."""
 Identity = Mapping[str, Any]
 """What results are of, as JSON can hold it: versions, the configuration, and those two."""
 
@@ -35,7 +36,7 @@ def meanings(
     points: Iterable[Choice],
 ) -> dict[str, list[Any]]:
     """What the names of policies, of scenes (with picture and digest) and of points stand for."""
-    named = [(f"policy {policy.title}", asdict(canonical(policy))) for policy in policies]
+    named = [(f"policy {policy.title}", decides(canonical(policy))) for policy in policies]
     named += [(f"point {p.columns[POINTS[:-1]]}", dict(p.assignments)) for p in points]
     names: dict[str, list[Any]] = {}
     for name, meaning in named:
@@ -50,6 +51,8 @@ def meanings(
 
 def conflict(there: Identity, now: Identity) -> str:
     """What keeps the results of two sweeps from lying in one folder; empty if nothing does."""
+    if there.get(FORMAT) != now.get(FORMAT):
+        return difference({FORMAT: there.get(FORMAT)}, {FORMAT: now.get(FORMAT)})
     swept = {*there.get(SWEPT, ()), *now.get(SWEPT, ())}
     return difference(_outside(there, swept), _outside(now, swept)) or _renamed(
         there.get(NAMES, {}), now.get(NAMES, {})

@@ -116,7 +116,7 @@ def run_sweep(
         closing(_results(plan, folder)) as results,
         closing(pool or _pool(workers, cluster, timeout_s)) as own,
     ):
-        if folder is not None and call:
+        if folder is not None:
             note_call(folder, call)
         tables = _run(plan, results, own, folder, watcher or Watcher())
     return SweepResult(_frame(*tables[RESULTS]), _frame(*tables[PROFITS]), folder)

@@ -55,7 +55,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(
-        key=_hash(place, _decides(policy), settings.ready_order, settings.method, settings.engine),
+        key=_hash(place, decides(policy), settings.ready_order, settings.method, settings.engine),
         placement_key=place,
         digest=digest,
         config=replace(config, source=None),
@@ -77,7 +77,7 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
     return replace(policy, **unread)
 
 
-def _decides(policy: PolicyParameters) -> dict[str, Any]:
+def decides(policy: PolicyParameters) -> dict[str, Any]:
     """What decides what a policy does: of a file not where it lies, but what is in it."""
     said = {field.name: getattr(policy, field.name) for field in fields(policy)}
     return said | {"file": policy.own.get("digest"), "set": policy.numbers}

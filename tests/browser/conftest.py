@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from collections.abc import Callable, Iterator
@@ -13,10 +14,11 @@ import pytest
 from sweep_rows import HOSTILE, failed, row, sweep, written
 
 from simmpp.common.files import Row, write_csv
+from simmpp.common.folders import SWEEP, claimed, note_call
 from simmpp.report.page.comparison import write_comparison
-from simmpp.report.page.difference import difference_of
-from simmpp.report.page.folder import read_folder
+from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.report import report_of, write_page
+from simmpp.report.page.together import together
 from simmpp.studies.bench.errors import bench_columns
 
 if TYPE_CHECKING:
@@ -56,7 +58,8 @@ class Opened:
         return int(self.page.evaluate(f"{root}.scrollWidth - {root}.clientWidth"))
 
     def draw_all(self) -> None:
-        """Scroll through the page until each chart is drawn."""
+        """Scroll through the page until each chart is drawn, what is folded as well."""
+        self.page.locator("details").evaluate_all("all => all.forEach(one => one.open = true)")
         for chart in self.page.locator(".chart").all():
             chart.scroll_into_view_if_needed()
             chart.locator(".main-svg").first.wait_for()
@@ -137,12 +140,39 @@ def report(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
 def comparison(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> Path:
     base = tmp_path_factory.mktemp("compared")
     slower = [r | {"makespan_ps": r["makespan_ps"] + 10**9} if not r["error"] else r for r in rows]
-    before, after = (
-        read_folder(written(base / name, each))
+    folders = {
+        name: read_folder(written(base / name, each))
         for name, each in (("before", rows), ("after", slower[:-40]))
-    )
+    }
     page = base / "compare.html"
-    write_comparison(before, after, difference_of(before, after), page)
+    write_comparison(folders, page)
+    return page
+
+
+@pytest.fixture(scope="session")
+def folders(tmp_path_factory: pytest.TempPathFactory, rows: list[Row]) -> dict[str, Folder]:
+    """Three, of which one is half a sweep; the command that goes on is a long one."""
+    base, found = tmp_path_factory.mktemp("folders"), {}
+    for times, name in enumerate(("as it is", "slow", "slower"), 1):
+        own = [r | {"makespan_ps": times * r["makespan_ps"]} if not r["error"] else r for r in rows]
+        with claimed(base / name, SWEEP):
+            long = "simmpp sweep configs/sweep.yaml --set memory.fraction='[0.1, 0.2, 0.5]' --out "
+            note_call(base / name, long + "results/" + 8 * "x")
+        record = {"simulations": 3000, "finished": 2000 if times == 2 else 3000, "failed": 0}
+        (base / name / "run.json").write_text(json.dumps(record))
+        found[name] = read_folder(written(base / name, own))
+    return found
+
+
+@pytest.fixture(scope="session")
+def several(folders: dict[str, Folder], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_page(report_of(together(folders, tmp_path_factory.mktemp("several"))))
+
+
+@pytest.fixture(scope="session")
+def comparisons(folders: dict[str, Folder], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    page = tmp_path_factory.mktemp("comparisons") / "compare.html"
+    write_comparison(folders, page)
     return page
 
 

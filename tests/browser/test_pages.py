@@ -17,7 +17,7 @@ from simmpp.report.page.report import report_of, write_page
 from simmpp.run import words
 from simmpp.sweeps.winners.points import Points, points_of
 
-PAGES = ["report", "run", "bench", "reproduction", "comparison"]
+PAGES = ["report", "run", "bench", "reproduction", "comparison", "several", "comparisons"]
 LOOKS = [(400, "light"), (400, "dark"), (1400, "light"), (1400, "dark")]
 BACKGROUND = {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 24, 29)"}
 

@@ -263,6 +263,15 @@ def test_a_sweeps_folder_is_a_baseline() -> None:
     assert "missing" in done.stdout and "new" in done.stdout
 
 
+def test_half_a_sweep_is_no_baseline() -> None:
+    simmpp("sweep", "c.yaml", "--workers", "1", "--out", "b")
+    record = Path("b/run.json")
+    record.write_text(record.read_text().replace('"finished": 6', '"finished": 4'))
+    line = check_refused()
+    call = "simmpp sweep c.yaml --workers 1 --out b"
+    assert f"it is unfinished (4 of 6 simulations; to go on: {call}): run with --update" in line
+
+
 def test_an_update_that_is_interrupted_leaves_a_baseline_that_is_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -292,6 +301,7 @@ def test_failed_points_fail_the_check_and_are_no_baseline(monkeypatch: pytest.Mo
     done = check()
     assert done.exit_code == 1
     assert "out of memory" in done.stdout
+    assert "simmpp: 6 rows failed: out of memory\n" in done.stderr
     assert check("--update").exit_code == 1
     assert {path.name: path.read_bytes() for path in Path("b").iterdir()} == before
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import Case, cases, random_case
+from builders import Case, cases, on_torus, random_case
 from hypothesis import given, settings
 from implementations import result_of, run
-from oracles.costs import network_ps, transfer_ps
+from oracles.costs import transfer_ps
 from oracles.machine import Simulation
-from oracles.network import Network
+from oracles.network import Network, network_ps
 
 from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.simulate import ENGINES, simulate
@@ -49,7 +49,7 @@ def waits_ps(case: Case) -> set[int]:
     for time, destination, source, number, _, n_bytes in simulation.ledger.arrivals:
         message = sent[source, number]
         waits.add(time - message.departure - network_ps(machine, source, destination, n_bytes))
-        if network.transfer_ps(message) == 0:
+        if network.way(message)[-1][2] == 0:
             waits.add(1)  # its head is at the last port when it arrives: ties are in another order
     return waits
 
@@ -58,7 +58,7 @@ def waits_ps(case: Case) -> set[int]:
 @given(case=cases())
 @many
 def test_an_ejection_port_serves_one_message_at_a_time(engine: str, case: Case) -> None:
-    machine = case.machine
+    case, machine = on_torus(case), case.machine
     limits = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
     slowest = min((limit for limit in limits if limit != UNLIMITED), default=UNLIMITED)
     log = result_of(engine, on(case, contention=LINKS)).log

@@ -7,11 +7,10 @@ from math import prod
 
 import numpy as np
 import pytest
-from builders import random_case
+from builders import on_some_network, random_case
 from by_hand import MACHINE
 from oracles.hop_by_hop import HopByHop, Sent
 from oracles.machine import Simulation
-from oracles.network import Network
 from traffic import arrivals_ps
 
 from simmpp.machine.machine import Machine
@@ -30,12 +29,13 @@ def random_traffic(seed: int) -> tuple[Machine, list[Sent]]:
     traffic = []
     for number, depart_ps in enumerate(departs):
         source, destination = rng.choice(prod(shape), 2, replace=False).tolist()
-        busy_ps = int(rng.integers(longest_ps + 1))
-        traffic.append(Sent(depart_ps, source, number, destination, busy_ps))
+        n_bytes = int(rng.integers(longest_ps + 1))  # a byte a picosecond
+        traffic.append(Sent(depart_ps, source, number, destination, n_bytes))
     latencies = {"latency_ps": int(rng.integers(50)), "hop_latency_ps": int(rng.integers(40))}
     if rng.random() < 0.2:
         latencies = {"latency_ps": 0, "hop_latency_ps": 0}
-    return replace(MACHINE, shape=shape, **latencies), sorted(traffic)
+    machine = replace(MACHINE, shape=shape, **latencies)
+    return on_some_network(machine, seed), sorted(traffic)
 
 
 @pytest.mark.parametrize("first_seed", range(0, 400, 100))
@@ -52,13 +52,19 @@ def test_arrivals_of_whole_runs_are_equal() -> None:
     for seed in range(60):
         case = random_case(seed)
         machine = replace(case.machine, contention=LINKS)
-        rules, network = POLICIES[case.policy.name], Network(machine)
+        rules = POLICIES[case.policy.name]
         parts = (case.workload, machine, case.placement, case.policy, case.ready_order, rules)
         simulation = Simulation(*parts)
         simulation.run()
         ledger = simulation.ledger
         sent = sorted(
-            Sent(m.departure, m.source, m.send_number, m.destination, network.transfer_ps(m))
+            Sent(
+                m.departure,
+                m.source,
+                m.send_number,
+                m.destination,
+                m.payload_bytes + machine.header_bytes,
+            )
             for m in ledger.sent
         )
         arrivals = HopByHop(machine, sent).arrivals_ps

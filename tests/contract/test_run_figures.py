@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any, cast
 
@@ -16,6 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from oracles.costs import hops_from, neighbours
+from oracles.network import WAYS, distance
 
 from simmpp.common.compiled import njit
 from simmpp.common.modules import PICTURES
@@ -79,9 +81,11 @@ def test_traffic_is_all_messages_and_bytes(case: Case) -> None:
 @many
 def test_bytes_over_links_are_bytes_times_hops(case: Case) -> None:
     _, motion = seen(case)
-    shape, nb = case.machine.shape, case.machine.processors
-    far = np.array([[hops_from(shape, i)[j] for j in range(nb)] for i in range(nb)])
-    assert int(motion.link_bytes.sum()) == int((motion.bytes * far).sum())
+    pairs = list(product(range(case.machine.processors), repeat=2))
+    far = np.reshape([distance(case.machine, i, j) for i, j in pairs], motion.bytes.shape)
+    way = WAYS[case.machine.topology]
+    links = [len(way(case.machine, i, j, 0)) - 2 if i != j else 0 for i, j in pairs]  # and ports
+    assert int(motion.link_bytes.sum()) == int((motion.bytes.flat * np.array(links)).sum())
     expected = [int(motion.messages[far == h].sum()) for h in range(len(motion.hops))]
     assert motion.hops.tolist() == expected
 
@@ -140,7 +144,7 @@ def test_hops_of_rays_are_those_of_the_messages_that_carried_them(case: Case) ->
     assert result.log is not None
     links = 0
     for row in result.log[(result.log["event"] == RECEIVE)]:
-        far = hops_from(case.machine.shape, int(row["other"]))[int(row["pe"])]
+        far = distance(case.machine, int(row["other"]), int(row["pe"]))
         links += far * int(row["rays"]) + 2 * far * int(row["objects"])
     assert int(motion.pixel_hops.sum()) == links
     assert (result.log["number"][result.log["event"] == SEND] != NONE).sum() == result.messages

@@ -164,6 +164,19 @@ def test_a_name_that_means_something_else_is_refused(tmp_path: Path) -> None:
             run_sweep({**named, **other}, out=tmp_path)
 
 
+def test_a_policy_of_ones_own_that_became_another_is_refused(tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    rule = "from simmpp.policy import Policy, hook\n@hook\ndef send(v):\n    return v.load > {}\n"
+    rule += "@hook\ndef ask(v):\n    return True\nPOLICY = Policy('own', send=send, ask=ask)\n"
+    config = {**SMALL, "policy": {"file": str(own), "label": "mine"}}
+    own.write_text(rule.format(3))
+    tables(config, tmp_path / "o")
+    tables({**config, "seeds": [2]}, tmp_path / "o")
+    own.write_text(rule.format(4))
+    with pytest.raises(ConfigError, match=r"policy mine\.file is "):
+        run_sweep(config, out=tmp_path / "o")
+
+
 def test_a_scene_that_became_another_is_refused(tmp_path: Path) -> None:
     config = {**SMALL, "scene": str(tmp_path / "s.obj")}
     sizes = {"seeds": [0], "sweep": {"picture.resolution": [8]}}

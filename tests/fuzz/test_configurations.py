@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import Config, load_config
+from simmpp.workload.picture import OWN
 
 # ruff: noqa: E501, RUF001, SIM905
 NUMBERS = st.sampled_from(
@@ -87,7 +88,8 @@ SETS = st.sampled_from(
         "machine.shape", "machine.pack.rays.bandwidth", "machine.quantum", "policy", "policy.batch",
         "policy.min_load", "policy.load_info", "seeds", "engine", "method", "sweep", "sweep.processors",
         "check.time_profit", "tolerance", "ready_order", "placement.owners", "placement.pixels", "reading",
-        "sweep.reading",
+        "sweep.reading", "scene.camera", "scene.camera.angle", "scene.camera.eye", "scene.lights", "scene.up",
+        "scene.parts", "scene.objects",
     ]
 )  # fmt: skip
 
@@ -98,7 +100,8 @@ def small(config: Config) -> bool:
     generated = spec.get("spd") is None or (
         spec["spd"] in ("tetra", "rings", "ring") and spec.get("size", 9) in (1, 2)
     )
-    return generated and picture.resolution <= 9 and config.processors <= 100
+    own = picture.resolution == OWN  # which is 512 x 512 in the SPD
+    return generated and not own and max(picture.pixels) <= 9 and config.processors <= 100
 
 
 def runs_or_is_refused(*overrides: str) -> None:

@@ -1,4 +1,4 @@
-"""What a message or a test costs, by fractions and by walking over the links of the torus."""
+"""What a copy or a test costs, by fractions; how far PEs are, by walking over the torus."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
+Stage = tuple[tuple[str, ...], int, int]
+"""A link or port by its name; how long a message keeps it; when its head is at the next one, or the
+message is there: after how long."""
 
 
 def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
@@ -17,6 +20,12 @@ def transfer_ps(n_bytes: int, bytes_per_s: int) -> int:
     if bytes_per_s == UNLIMITED:
         return 0
     return floor(Fraction(n_bytes * PS_PER_S, bytes_per_s) + Fraction(1, 2))
+
+
+def slowest(machine: Machine) -> int:
+    """The bandwidth of links and ports that are all alike."""
+    limits = (machine.link_bytes_per_s, machine.injection_bytes_per_s)
+    return min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
 
 
 def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
@@ -59,15 +68,3 @@ def hops_from(shape: tuple[int, int, int], pe: int) -> dict[int, int]:
                 hops[there] = hops[here] + 1
                 queue.append(there)
     return hops
-
-
-def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:
-    """Time from departure to arrival on an empty network."""
-    limits = [machine.link_bytes_per_s, machine.injection_bytes_per_s]
-    slowest = min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
-    hops = hops_from(machine.shape, source)[destination]
-    return (
-        machine.latency_ps
-        + hops * machine.hop_latency_ps
-        + transfer_ps(payload_bytes + machine.header_bytes, slowest)
-    )

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable
 from dataclasses import dataclass
-from functools import cache
 
 import simpy
 from simpy.events import Event
 
-from oracles.network import links
+from oracles.network import WAYS
 from simmpp.machine.machine import Machine
 
 
@@ -25,8 +24,8 @@ class Sent:
     source: int
     number: int
     destination: int
-    busy_ps: int
-    """How long it occupies each link and port."""
+    n_bytes: int
+    """With its header."""
 
 
 class HopByHop:
@@ -34,23 +33,23 @@ class HopByHop:
 
     def __init__(self, machine: Machine, traffic: Iterable[Sent]) -> None:
         self.environment = simpy.Environment()
-        self.latency_ps, self.hop_latency_ps = machine.latency_ps, machine.hop_latency_ps
         self.arrivals_ps: dict[int, int] = {}
         self._resources: dict[tuple[str, ...], simpy.Resource] = {}
-        self._way = cache(lambda source, destination: links(machine.shape, source, destination))
+        self._machine = machine
         for n, sent in enumerate(traffic):
             self.environment.process(self._travel(n, sent))
         self.environment.run()
 
     def _travel(self, n: int, sent: Sent) -> Generator[Event, None, None]:
-        yield self._head_at(sent, sent.depart_ps)
-        yield from self._take(("injection", str(sent.source)), sent.busy_ps)
-        yield self._head_at(sent, self.latency_ps)
-        for link in self._way(sent.source, sent.destination):
-            yield from self._take(link, sent.busy_ps)
-            yield self._head_at(sent, self.hop_latency_ps)
-        yield from self._take(("ejection", str(sent.destination)), sent.busy_ps)
-        yield self.environment.timeout(sent.busy_ps)
+        way = WAYS[self._machine.topology]
+        delay_ps = sent.depart_ps
+        for what, busy_ps, then_ps in way(
+            self._machine, sent.source, sent.destination, sent.n_bytes
+        ):
+            yield self._head_at(sent, delay_ps)
+            yield from self._take(what, busy_ps)
+            delay_ps = then_ps
+        yield self.environment.timeout(delay_ps)
         self.arrivals_ps[n] = self.environment.now
 
     def _head_at(self, sent: Sent, delay_ps: int) -> Event:

@@ -11,9 +11,10 @@ import heapq
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from oracles.costs import copy_ps, hops_from, intersection_ps
+from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
+from oracles.network import distance
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -84,7 +85,7 @@ class Simulation(Dispatch):
         if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
         pe.refresh_allowed = not message.count(LOAD)
-        far = hops_from(self.machine.shape, message.source)[pe.number]
+        far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
             if part.kind == RAYS:
                 pe.make_ready(list(part.rays), self.ready_order)

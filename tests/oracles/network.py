@@ -1,7 +1,7 @@
 """Links and ports that serve one message at a time, in plain Python, by names instead of numbers.
 
-The latency is paid before the ejection port, not behind the injection port as in the package: all
-messages pay it once, so it makes no difference where.
+On the torus the latency is paid before the ejection port, not behind the injection port as in the
+package: all messages pay it once, so it makes no difference where.
 """
 
 from __future__ import annotations
@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 
-from oracles.costs import transfer_ps
+from oracles import blocks, tree
+from oracles.costs import Stage, hops_from, slowest, transfer_ps
 from oracles.state import Message
-from simmpp.machine.machine import UNLIMITED, Machine
+from simmpp.machine.machine import Machine
 
 Way = list[tuple[str, ...]]
 
@@ -34,6 +35,39 @@ def links(shape: tuple[int, int, int], source: int, destination: int) -> Way:
     return way
 
 
+def torus_way(machine: Machine, source: int, destination: int, n_bytes: int) -> list[Stage]:
+    """Ports and links of a torus."""
+    busy_ps = transfer_ps(n_bytes, slowest(machine))
+    at_port_ps = max(busy_ps, machine.port_gap_ps)
+    between = links(machine.shape, source, destination)
+    stages = [(link, busy_ps, machine.hop_latency_ps) for link in between]
+    stages[-1] = (between[-1], busy_ps, machine.hop_latency_ps + machine.latency_ps)
+    ejection = ("ejection", str(destination)), at_port_ps, busy_ps
+    return [(("injection", str(source)), at_port_ps, 0), *stages, ejection]
+
+
+WAYS = {"torus": torus_way, "levels": blocks.way, "fat-tree": tree.way}
+"""All that a message takes on its way, by topology."""
+
+
+def distance(machine: Machine, source: int, destination: int) -> int:
+    """Links between two PEs, or levels."""
+    if machine.topology == "torus":
+        return hops_from(machine.shape, source)[destination]
+    of = {"levels": blocks.distance, "fat-tree": tree.distance}[machine.topology]
+    return of(machine, source, destination)
+
+
+def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:
+    """Time from departure to arrival on an empty network."""
+    n_bytes = payload_bytes + machine.header_bytes
+    if machine.topology == "levels":
+        level = blocks.level_between(machine, source, destination)
+        return level.latency_ps + transfer_ps(n_bytes, level.bytes_per_s)
+    hops_ps = distance(machine, source, destination) * machine.hop_latency_ps
+    return machine.latency_ps + hops_ps + transfer_ps(n_bytes, slowest(machine))
+
+
 @dataclass
 class Network:
     """From when on each link and port is free."""
@@ -41,19 +75,11 @@ class Network:
     machine: Machine
     free: defaultdict[tuple[str, ...], int] = field(default_factory=lambda: defaultdict(int))
 
-    def transfer_ps(self, message: Message) -> int:
-        """How long a message keeps a link or port busy."""
-        limits = (self.machine.link_bytes_per_s, self.machine.injection_bytes_per_s)
-        slowest = min((b for b in limits if b != UNLIMITED), default=UNLIMITED)
-        return transfer_ps(message.payload_bytes + self.machine.header_bytes, slowest)
-
-    def way(self, message: Message) -> list[tuple[tuple[str, ...], int]]:
-        """Ports and links of a message, and how long its head takes from each to the next."""
-        between = links(self.machine.shape, message.source, message.destination)
-        stages = [(link, self.machine.hop_latency_ps) for link in between]
-        stages[-1] = (stages[-1][0], stages[-1][1] + self.machine.latency_ps)
-        ejection = (("ejection", str(message.destination)), self.transfer_ps(message))
-        return [(("injection", str(message.source)), 0), *stages, ejection]
+    def way(self, message: Message) -> list[Stage]:
+        """Ports and links of a message."""
+        n_bytes = message.payload_bytes + self.machine.header_bytes
+        way = WAYS[self.machine.topology]
+        return way(self.machine, message.source, message.destination, n_bytes)
 
     def take(self, what: tuple[str, ...], head: int, busy: int) -> int:
         """Wait for a link or port, and keep it busy; returns when it was free."""

@@ -9,7 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from oracles.costs import copy_ps, hops_from, intersection_ps, network_ps
+from oracles.costs import copy_ps, intersection_ps
+from oracles.network import distance, network_ps
 from oracles.state import PE
 from oracles.world import World
 from simmpp.common.randomness import key
@@ -53,7 +54,7 @@ class Views(World):
             known_load=known,
             age_ps=age,
             in_flight=pe.in_flight_to[other] if self.policy.load_info == "piggyback" else 0,
-            hops=hops_from(self.machine.shape, pe.number)[other],
+            hops=distance(self.machine, pe.number, other),
             parameter=[*self.policy.numbers, *[0] * 8][:8],
             memory=pe.memory,
             random=random_draw(self.seed, pe) if draws else None,

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from oracles.costs import copy_ps, network_ps
+from oracles.costs import Stage, copy_ps
 from oracles.ledger import Ledger
-from oracles.network import Network
+from oracles.network import Network, network_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS
@@ -94,15 +94,15 @@ class World:
             self.let_arrive(clock + flight, message)
         return clock
 
-    def come_to(self, time: int, message: Message, way: list[Any]) -> None:
+    def come_to(self, time: int, message: Message, way: list[Stage]) -> None:
         """The head of a message will be at the first of these ports and links."""
         key = (time, 2, message.source, message.send_number, 0)
         heapq.heappush(self.queue, (key, "take", (message, way)))
 
-    def take(self, time: int, head: tuple[Message, list[Any]]) -> None:
+    def take(self, time: int, head: tuple[Message, list[Stage]]) -> None:
         """The head of a message is at a port or link, and goes on when that is free."""
-        message, ((what, then), *rest) = head
-        time = self.network.take(what, time, self.network.transfer_ps(message)) + then
+        message, ((what, busy, then), *rest) = head
+        time = self.network.take(what, time, busy) + then
         if rest:
             self.come_to(time, message, rest)
         else:

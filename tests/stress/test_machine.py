@@ -38,10 +38,13 @@ seeds = st.integers(0, 2**32 - 1)
 
 def priced(machine: Machine, times: tuple[int, ...], test_ps: int, copy_ps: int) -> Machine:
     """Costs of these times, in the order of TIMES; bytes cost nothing."""
-    copies = (CopyCost(copy_ps),) * 4
+    copies, named = (CopyCost(copy_ps),) * 4, dict(zip(TIMES, times, strict=True))
+    of_levels = {"latency_ps": named["latency_ps"], "gap_ps": named["probe_ps"], "bytes_per_s": 0}
     return replace(
         machine,
-        **dict(zip(TIMES, times, strict=True)),
+        **named,
+        port_gap_ps=named["probe_ps"],
+        levels=tuple(replace(level, **of_levels) for level in machine.levels),
         pack=copies,
         unpack=copies,
         link_bytes_per_s=UNLIMITED,

@@ -38,7 +38,7 @@ class CountingWatcher(Watcher):
         if self.before:
             notice(f"{self.before} of {self.total} simulations are there from before")
         if others := len(finished.keys() - keys):
-            notice(f"{counted(others, 'simulation')} of other points stay in {JOURNAL} unused")
+            notice(f"{counted(others, 'simulation')} of other points stay in {JOURNAL} for later")
 
     def asked(self, tasks: int) -> None:
         """Count what an adaptive sweep adds while it runs, too."""

@@ -173,7 +173,6 @@ PARAMETERS = (
     *MACHINE,
     "processors",
     "n_objects",
-    "bytes_per_s",  # the smaller of link and injection bandwidth
     "contends",  # links and ports serve one message at a time
     "depth_first",
     "transient",

@@ -81,9 +81,9 @@ MESSAGE = np.dtype(
         ("payload_bytes", "i8"),  # of all parts of the message
         ("part_bytes", "i8"),  # of this part alone
         ("arrival_ps", "i8"),
-        ("busy_ps", "i8"),  # with contention: how long it keeps each link and port busy,
+        ("busy_ps", "i8"),  # with contention: how long its bytes take from port to port,
         ("head_ps", "i8"),  # when its head is at the next link or port,
-        ("at", "i4"),  # and the node where that is: a PE or a switch
+        ("at", "i4"),  # and the node where that is, as the topology numbers it
         ("destination", "i4"),
         ("source", "i4"),
         ("chain", "i4"),

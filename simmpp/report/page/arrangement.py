@@ -11,6 +11,8 @@ from simmpp.run import words
 
 PREFERRED = ("fraction", "processors")
 """Abscissas, of those with equally many values."""
+FACETS = ("folder", "policy")
+"""Side by side before all others, where they are axes."""
 MOST_PANELS = 12
 """Panels side by side; an axis with more values becomes plates."""
 Axes = Mapping[str, Sequence[Any]]
@@ -53,7 +55,7 @@ def arrange(
     rest = [name for name in axes if name != abscissa and not _follows(rows, name, abscissa)]
     few = [name for name in rest if len(axes[name]) <= MOST_PANELS]
     if facet is None and few:
-        facet = max(few, key=lambda name: (name == "scene", len(axes[name])))
+        facet = max(few, key=lambda name: (name in FACETS, name == "scene", len(axes[name])))
     values = axes.get(abscissa) or list(dict.fromkeys(row[abscissa] for row in rows))
     return Arrangement(
         abscissa, tuple(values), facet, tuple(name for name in rest if name != facet)

@@ -8,9 +8,10 @@ must not overlap.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
+from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps
@@ -34,6 +35,8 @@ COMPARED = {
 }
 """The column of each, and whether it is the reference's over it."""
 BySeed = Mapping[int, float]
+NAMES = ("before", "after")
+"""Of two sweeps, unless they have names of their own."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +66,16 @@ class SideBySide:
     changes: list[Change]
     only_before: list[str]
     only_after: list[str]
+    names: tuple[str, str] = NAMES
+    """What the two are called."""
+
+    @property
+    def only(self) -> list[tuple[str, list[str]]]:
+        """Points that only one has, by its name."""
+        return list(zip(self.names, (self.only_before, self.only_after), strict=True))
 
 
-def difference_of(before: Folder, after: Folder) -> SideBySide:
+def difference_of(before: Folder, after: Folder, names: tuple[str, str] = NAMES) -> SideBySide:
     """Compare what both have; a column that only one has must have one value there."""
     further = tuple(name for name in before.further if name in after.further)
     for one, other in ((before, after), (after, before)):
@@ -81,7 +91,7 @@ def difference_of(before: Folder, after: Folder) -> SideBySide:
             gone.append(_said(old, number))
         elif number_now is not None:
             added.append(_said(new, number_now))
-    return SideBySide(old, new, common, changes, gone, added)
+    return SideBySide(old, new, common, changes, gone, added, names)
 
 
 def _numbers(points: Points, further: Sequence[str]) -> dict[tuple[Hashable, ...], int]:
@@ -174,16 +184,31 @@ def ranked(changes: Sequence[Change]) -> list[Change]:
     return sorted(changes, key=lambda c: (c.certainty != BEYOND, -distance(c), c.number))
 
 
-def line(change: Change) -> dict[str, str]:
-    """A change as cells of a table."""
-    return {
-        "point": change.of,
-        "measure": change.measure,
-        "before": _number(change.before, change.measure),
-        "after": _number(change.after, change.measure),
-        "change": percent(change.ratio - 1),
-        "how sure": change.certainty,
-    }
+def line(change: Change, names: tuple[str, str] = NAMES) -> dict[str, str]:
+    """A change as cells of a table; ``names`` are the sweeps'."""
+    cells = {"point": change.of, "measure": change.measure}
+    ends = {"change": percent(change.ratio - 1), "how sure": change.certainty}
+    before, after = NAMES if {*names} & {*cells, *ends} else names
+    cells[before] = _number(change.before, change.measure)
+    cells[after] = _number(change.after, change.measure)
+    return cells | ends
+
+
+def apart(sweeps: SideBySide) -> str:
+    """Why no point is in both: the first key with other values in each, if there is one."""
+    old, new = (points.profits for points in (sweeps.before, sweeps.after))
+    for name in (*PLACE, *sweeps.after.further, "policy") if old and new else ():
+        before, after = ({row[name]: None for row in rows} for rows in (old, new))
+        if not before.keys() & after.keys():
+            texts = (_some(name, cells) for cells in (before, after))
+            sides = zip(texts, sweeps.names, strict=True)
+            return f"{words.SHORT.get(name, name)} is " + ", ".join(map(" ".join, sides))
+    return ""
+
+
+def _some(name: str, cells: Iterable[Any]) -> str:
+    first, *more = (words.value(name, cell) for cell in cells)
+    return f"{first} (and {len(more)} more)" if more else first
 
 
 def _number(value: float, measure: str) -> str:

@@ -12,7 +12,9 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
+from simmpp.common.folders import is_at_work, last_call
 from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS, PACKED
+from simmpp.run import words
 from simmpp.run.record import read_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
 from simmpp.studies.bench.bench import BENCH
@@ -20,6 +22,7 @@ from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
 from simmpp.studies.nebel98.verdict import CLAIM_COLUMNS
 from simmpp.sweeps.intervals import PLAIN
+from simmpp.sweeps.journal import FILE as JOURNAL
 from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.stopping import CORRECTED
 
@@ -47,6 +50,16 @@ class Folder:
     """Those of ``bench.csv``."""
     record: Mapping[str, Any] = field(default_factory=dict)
     """``run.json``."""
+    parts: Mapping[str, Folder] = field(default_factory=dict)
+    """By name, the folders that these are the rows of, where there are several."""
+    called: str = ""
+    """By its user, if at all."""
+
+    @property
+    def title(self) -> str:
+        """What it, or they, are called."""
+        joint = words.any_of(self.parts, "and") if self.parts else ""
+        return self.called or joint or self.path.resolve().name
 
     @property
     def seeds(self) -> int:
@@ -67,6 +80,8 @@ class Folder:
     @property
     def confidence(self) -> float:
         """Of the quantiles of its intervals: seeds that a tolerance chose need wider ones."""
+        if self.parts:
+            return max(part.confidence for part in self.parts.values())
         config = self.record.get("config")
         has_tolerance = isinstance(config, dict) and config.get("tolerance") is not None
         return CORRECTED if has_tolerance else PLAIN
@@ -97,11 +112,21 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
     files = {name: path / f"{name}.csv" for name in EXPERIMENTS}
     experiments = {name: read_rows(file)[0] for name, file in files.items() if file.is_file()}
     if not experiments and not bench:
-        raise ConfigError(
-            f"{name}: value {str(path)!r}: there are no rows: expected {RESULTS} (of run or "
-            f"sweep), {EXPERIMENTS[0]}.csv (of reproduce) or {BENCH} (of bench)"
-        )
+        raise ConfigError(f"{name}: value {str(path)!r}: {_no_rows(path)}")
     return Folder(path, _once(experiments), (), experiments, claims, timings, (), bench, record)
+
+
+def _no_rows(path: Path) -> str:
+    """Why there are none."""
+    if is_at_work(path):
+        return "there are no rows yet: the command that works here writes them at its end"
+    if (path / JOURNAL).is_file():
+        call = last_call(path) or "the call that began it"
+        return f"interrupted, before there were rows; to go on: {call}"
+    return (
+        f"there are no rows: expected {RESULTS} (of run or sweep), {EXPERIMENTS[0]}.csv (of "
+        f"reproduce) or {BENCH} (of bench)"
+    )
 
 
 def _labelled(node: object) -> Iterator[tuple[str, str]]:

@@ -12,6 +12,7 @@ from typing import Any
 from simmpp.common.files import Row
 from simmpp.common.units import format_ps
 from simmpp.report.page.folder import Folder
+from simmpp.report.page.together import FOLDER
 from simmpp.run import words
 from simmpp.run.limits import PARTS, Limits, MessageCosts, limits_of, together
 from simmpp.sweeps.intervals import of_logarithms
@@ -48,9 +49,11 @@ class PointLimits:
 
 def limits_of_points(folder: Folder, points: Points) -> PointLimits:
     """Work them out from rows, the record's machines and, of a run, the accounts of its PEs."""
-    costs, accounts = _costs(folder.record), _accounts(folder.record)
+    folders = folder.parts or {"": folder}
+    told = {name: (_costs(f.record), _accounts(f.record)) for name, f in folders.items()}
     found = {}
     for number, profit in enumerate(points.profits):
+        costs, accounts = told[profit[FOLDER] if folder.parts else ""]
         runs, nb = points.runs[number], profit["processors"]
         of_pes = accounts.get(profit["policy"], ()) if len(runs) == 1 else ()
         if runs and all(row.get(name, "") != "" for row in runs for name in NEEDED):

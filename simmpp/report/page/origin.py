@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from simmpp.common.units import counted
 from simmpp.report.page.folder import Folder, number_of
@@ -18,15 +18,27 @@ def facts(folder: Folder) -> list[str]:
     named = ", ".join(scenes) if len(scenes) <= 4 else counted(len(scenes), "scene")
     if not rows:
         return ["no rows yet"]
+    parts = [f"{name}: {part.path}" for name, part in folder.parts.items()]
     pes = words.said("processors", processors[0])
     if len(processors) > 1:
         pes = f"{processors[0]} to {processors[-1]} PEs"
-    return [named, pes, counted(folder.seeds, "seed"), counted(len(rows), "row")]
+    return [*parts, named, pes, counted(folder.seeds, "seed"), counted(len(rows), "row")]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:
-    """Names and values, as text."""
+    """Names and values, as text; of several folders those that differ for each."""
+    if folder.parts:
+        return list(_of_each({name: dict(origin(part)) for name, part in folder.parts.items()}))
     return [*settings_of(folder.record), *_machines(folder), *_versions(folder), *_times(folder)]
+
+
+def _of_each(origins: Mapping[str, Mapping[str, str]]) -> Iterator[tuple[str, str]]:
+    for key in dict.fromkeys(key for of in origins.values() for key in of):
+        values = {name: of.get(key, "not given") for name, of in origins.items()}
+        if len({*values.values()}) == 1:
+            yield key, next(iter(values.values()))
+        else:
+            yield from ((f"{key}, {name}", value) for name, value in values.items())
 
 
 def _machines(folder: Folder) -> Iterator[tuple[str, str]]:

@@ -25,8 +25,9 @@ from simmpp.report.page.limits import (
     limits_of_points,
 )
 from simmpp.report.page.origin import facts, origin
-from simmpp.report.page.standing import standing_of, warnings_of
+from simmpp.report.page.standing import Warned, standing_of, warnings_of
 from simmpp.report.page.template import rendered
+from simmpp.report.page.together import warnings_of_all
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
@@ -57,6 +58,12 @@ class Report:
         """Those of all groups, in the order of the page."""
         return [figure for figures in self.groups.values() for figure in figures]
 
+    def warnings(self, *, is_followed: bool = False) -> list[Warned]:
+        """What readers have to know of the folder, or of several."""
+        if self.folder.parts:
+            return warnings_of_all(self.folder.parts)
+        return warnings_of(self.folder, is_followed=is_followed)
+
 
 def report_of(folder: Folder) -> Report:
     """Work out what the rows of a folder show."""
@@ -73,12 +80,18 @@ def report_of(folder: Folder) -> Report:
     return Report(folder, limits, {group: of for group, of in figures.items() if of})
 
 
-def write_page(report: Report, *, is_running: bool = False, stills: Collection[str] = ()) -> Path:
-    """Write ``report.html``; one that is running reloads itself.
+def write_page(
+    report: Report,
+    *,
+    is_running: bool = False,
+    stills: Collection[str] = (),
+    path: Path | None = None,
+) -> Path:
+    """Write ``report.html``, or the file ``path``; one that is running reloads itself.
 
     ``stills`` are the stems of the figures' files that there will be beside it.
     """
-    path = report.folder.path / PAGE
+    path = path or report.folder.path / PAGE
     write_text(rendered("report.html", _values(report, is_running, stills)), path)
     return path
 
@@ -107,13 +120,13 @@ def _write(path: Path, *, is_running: bool) -> Folder:
 
 def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[str, Any]:
     folder, points = report.folder, report.points
-    pictures = beside(folder.path)
+    pictures = [] if folder.parts else beside(folder.path)
     along = abscissas(points.axes)[0]
     return {
-        "title": folder.path.resolve().name or "report",
+        "title": folder.title or "report",
         "facts": facts(folder),
         "live": f"running: {standing_of(folder).progress}" if is_running else "",
-        "warnings": warnings_of(folder, is_followed=is_running),
+        "warnings": report.warnings(is_followed=is_running),
         "sentences": _sentences(report),
         "limits": limit_table(report.limits),
         "limits_of": LIMITS_ID,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from shlex import quote
 from typing import NamedTuple
@@ -11,7 +10,7 @@ from typing import NamedTuple
 from simmpp.common.folders import is_at_work, last_call
 from simmpp.common.units import counted
 from simmpp.report.page.folder import Folder
-from simmpp.run.record import FAILED, FINISHED, SIMULATIONS
+from simmpp.run.standing import Standing, recorded_standing
 
 GOES_ON, TRIES_AGAIN, FOLLOWS = "to go on:", "to try again:", "to follow it:"
 """What a command is given for."""
@@ -31,49 +30,25 @@ class Warned(NamedTuple):
         return f"{self.text} {self.call}".rstrip()
 
 
-@dataclass(frozen=True)
-class Standing:
-    """What there is, of what there will be."""
-
-    planned: int
-    finished: int
-    failed: int
-    of: str
-    """What is counted: simulations, or rows where nothing but these is known."""
-    so_far: bool = False
-    """More may be found to be needed."""
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all is done, be it well or not."""
-        return self.finished + self.failed >= self.planned
-
-    @property
-    def counts(self) -> str:
-        """``"17 of 36 simulations"``."""
-        so_far = " asked for so far" if self.so_far and not self.is_whole else ""
-        return f"{self.finished + self.failed} of {counted(self.planned, self.of)}{so_far}"
-
-    @property
-    def progress(self) -> str:
-        """``"17 of 36 simulations done, 2 failed"``."""
-        return f"{self.counts} done" + (f", {self.failed} failed" if self.failed else "")
-
-
 def standing_of(folder: Folder) -> Standing:
     """How far a folder is."""
-    record, n_failed = folder.record, len(folder.failed)
-    planned, finished, failed = (record.get(key) for key in (SIMULATIONS, FINISHED, FAILED))
-    if not (isinstance(planned, int) and isinstance(finished, int) and isinstance(failed, int)):
-        return Standing(folder.planned, len(folder.rows) - n_failed, n_failed, "row")
-    config = record.get("config", {})
-    grows = any(config.get(key) for key in ("tolerance", "refine"))
-    return Standing(planned, finished, failed, "simulation", grows)
+    n_failed = len(folder.failed)
+    by_rows = Standing(folder.planned, len(folder.rows) - n_failed, n_failed, "row")
+    return recorded_standing(folder.record) or by_rows
 
 
 def warnings_of(folder: Folder, *, is_followed: bool = False) -> list[Warned]:
     """What keeps a folder from being whole; a page that follows a sweep says that it runs."""
     return list(_warnings(folder, is_followed or is_at_work(folder.path), is_followed))
+
+
+def warnings_of_each(folders: Mapping[str, Folder]) -> list[Warned]:
+    """The same of several folders, by their names."""
+    return [
+        Warned(f"{name}: {text}", call)
+        for name, folder in folders.items()
+        for text, call in warnings_of(folder)
+    ]
 
 
 def _warnings(folder: Folder, is_running: bool, is_followed: bool) -> Iterator[Warned]:

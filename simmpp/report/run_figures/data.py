@@ -14,6 +14,7 @@ from simmpp.engine.result import Result
 from simmpp.machine.topology import (
     Network,
     Topology,
+    enter,
     hops,
     network_of,
     next_link,
@@ -164,10 +165,11 @@ def bytes_over_links(topology: Topology, traffic: Ints) -> Ints:
 def _add_over_links(network: Network, traffic: Ints, total: Ints) -> None:
     for source in range(len(traffic)):
         for destination in range(len(traffic)):
-            here = source
-            while here != destination and traffic[source, destination] > 0:
-                link, here = next_link(network, here, destination)
-                total[link] += traffic[source, destination]
+            n_bytes = traffic[source, destination]
+            here = enter(network, source, destination)[0] if n_bytes > 0 else destination
+            while here != destination:
+                link, here, _, _ = next_link(network, source, here, destination, 0, 0)
+                total[link] += n_bytes
 
 
 def hops_of(topology: Topology, messages: Ints) -> Ints:

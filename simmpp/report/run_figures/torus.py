@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import matplotlib
 import numpy as np
@@ -12,6 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from simmpp.machine.torus import Torus
 from simmpp.report.run_figures.data import Motion
 
 LOAD_COLOURS = "Blues"
@@ -26,9 +27,14 @@ _STUB = 0.45
 """Length of a link that leads out of a layer, or round the ring, in distances of PEs."""
 
 
+def sizes_of(motion: Motion) -> tuple[int, int, int]:
+    """Those of the torus."""
+    return cast(Torus, motion.topology).sizes
+
+
 def draw_torus(figure: Figure, motion: Motion) -> None:
     """One map for each z: x to the right, y up; links along z as diagonal stubs."""
-    x_size, y_size, z_size = motion.topology.sizes
+    x_size, y_size, z_size = sizes_of(motion)
     columns = min(z_size, _MOST_COLUMNS, max(1, 16 // x_size))
     rows = -(-z_size // columns)
     figure.set_size_inches(
@@ -53,7 +59,7 @@ def draw_torus(figure: Figure, motion: Motion) -> None:
 
 
 def _draw_layer(axes: Axes, motion: Motion, z: int, links: Any, loads: Any) -> None:
-    x_size, y_size, _ = motion.topology.sizes
+    x_size, y_size, _ = sizes_of(motion)
     first = x_size * y_size * z
     pes = np.arange(first, first + x_size * y_size)
     places = np.array([pes % x_size, pes // x_size % y_size], float).T
@@ -78,7 +84,7 @@ def _links_of(
     segments, amounts = [], []
     for pe, place in zip(pes, places, strict=True):
         for direction, way in enumerate(ways):
-            size = motion.topology.sizes[direction // 2]
+            size = sizes_of(motion)[direction // 2]
             if size == 1 or (size == 2 and direction % 2):  # such a link is not there
                 continue
             step = np.array(way, float)

@@ -241,6 +241,7 @@ class Surface(_Part):
     """A material."""
 
     name: str | None = None
+    alpha_mode: str = "OPAQUE"
     pbr_metallic_roughness: MetallicRoughness = MetallicRoughness()
     extensions: MaterialExtensions = MaterialExtensions()
 

@@ -10,6 +10,8 @@ from simmpp.scene.scene import Floats, Material, Vector
 
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
 """Of a surface that is clearly a mirror."""
+BLEND = "BLEND"
+"""The mode in which what is behind a surface shines through it, by its alpha."""
 MIRROR = 0.5
 """Kd and Ks of a mirror: those of the SPD's balls."""
 DIELECTRIC = 0.04
@@ -42,8 +44,10 @@ def _of_surface(surface: Surface) -> Material:
     if roughness is not None and metallic >= LEAST_METALLIC and roughness <= MOST_ROUGHNESS:
         return Material(colour, kd=MIRROR, ks=MIRROR)
     transmitted = surface.extensions.transmission.transmission_factor * (1 - metallic)
+    alpha = base[3] if base is not None and surface.alpha_mode == BLEND else 1.0
     if not transmitted > 0:
-        return Material(colour)
+        through = min(max(1 - alpha, 0.0), 1.0)  # straight on, as through a veil
+        return Material(colour, 1 - through, transmittance=through)
     # An index of 0 stands for older materials' ways, which have none.
     ior = surface.extensions.refraction.ior or Refraction().ior
     straight_on = ((ior - 1) / (ior + 1)) ** 2

@@ -12,7 +12,7 @@ from pathlib import Path
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
 from simmpp.common.folders import BENCH as BENCH_FOLDER
-from simmpp.common.folders import claimed
+from simmpp.common.folders import claimed, note_call
 from simmpp.config.axes import keys_of
 from simmpp.config.config import Config, with_key
 from simmpp.config.settings import long_policies
@@ -47,11 +47,18 @@ class Bench:
 
 
 def bench(
-    config: Config, *, seeds: int, out: Path, workers: int = 1, watcher: Watcher | None = None
+    config: Config,
+    *,
+    seeds: int,
+    out: Path,
+    workers: int = 1,
+    watcher: Watcher | None = None,
+    call: str = "",
 ) -> Bench:
     """Run every method that isn't run yet in the folder ``out``; write ``bench.csv`` and its plot.
 
     ``seeds`` is the number that is simulated at full fidelity; more of them add to what is there.
+    ``call`` is the command that goes on if this is interrupted.
     Raises ConfigError if the folder holds results of other versions.
     """
     refuse_unfit(config)
@@ -61,6 +68,7 @@ def bench(
         claimed(out, BENCH_FOLDER),
         closing(Journal(out, {"versions": result_versions()})) as journal,
     ):
+        note_call(out, call)
         _time_tracing(full, journal, watcher or Watcher())
         run_plans(plans.values(), journal, workers, watcher)
         return _written(plans, journal, out)

@@ -16,6 +16,7 @@ from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import copy, read_csv
+from simmpp.common.folders import last_call
 from simmpp.config.config import Config, config_from_mapping, described, with_key
 from simmpp.config.defaults import READING
 from simmpp.config.own_policies import FILE
@@ -24,6 +25,7 @@ from simmpp.methods.columns import COLUMNS
 from simmpp.run.provenance import difference
 from simmpp.run.record import read_record, write_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS
+from simmpp.run.standing import recorded_standing
 from simmpp.studies.check.moves import Sweep
 from simmpp.sweeps.profits import profit_columns
 
@@ -63,6 +65,10 @@ def read_baseline(path: Path, config: Config) -> Sweep:
     except (OSError, ValueError, KeyError, TypeError, csv.Error, ConfigError) as error:
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise _wrong(path, f"it is no baseline ({reason}): {UPDATE}") from None
+    standing = recorded_standing(baseline.record)
+    if standing is not None and not standing.is_whole:
+        call = last_call(folder) or "the call that made it"
+        raise _wrong(path, f"it is unfinished ({standing.counts}; to go on: {call}): {UPDATE}")
     if problem:
         raise _wrong(path, f"it is of other settings ({problem}): {UPDATE}")
     return baseline

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv, write_text
-from simmpp.common.folders import REPRODUCTION, claimed
+from simmpp.common.folders import REPRODUCTION, claimed, note_call
 from simmpp.config.config import Config, load_config
 from simmpp.config.defaults import READING
 from simmpp.config.reading import reading_names
@@ -65,13 +65,15 @@ def reproduce(
     resolution: int | None = None,
     workers: int = 1,
     watcher: Watcher | None = None,
+    call: str = "",
 ) -> list[Reproduction]:
     """Simulate what isn't simulated yet in the folder ``out``; write everything there.
 
     With several ``readings`` each has a folder in it, and the claims of all are in ``out``; without
     any it is the default one. ``seeds`` (their number) and ``resolution`` (pixels along each side)
     take the place of those of the experiments. A point that several experiments have is simulated
-    once, and kept in ``out`` whatever the seeds and the resolution of the next call are.
+    once, and kept in ``out`` whatever the seeds and the resolution of the next call are. ``call``
+    is the command that goes on if this is interrupted.
     Raises ConfigError if the folder holds results of other versions.
     """
     common = _overrides(seeds, resolution)
@@ -86,6 +88,7 @@ def reproduce(
         for folder in dict.fromkeys([out, *folders.values()]):
             claims.enter_context(claimed(folder, REPRODUCTION))
         with closing(Journal(out, {"versions": result_versions()})) as journal:
+            note_call(out, call)
             run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
             done = [
                 _report(name, plans[name], journal, own, folders[name])

@@ -32,7 +32,7 @@ def test_every_preset_makes_a_machine_and_cites_each_constant(name: str) -> None
     made = machine(name, processors=64)
     assert made.shape == (4, 4, 4)
     assert made.sources.keys() == load_preset(name).constants.flat().keys()
-    assert len(made.sources) == 33
+    assert len(made.sources) == 34
 
 
 def test_t3e_has_the_constants_that_its_file_says() -> None:

@@ -66,6 +66,9 @@ def test_without_any_it_is_as_it_was() -> None:
     )
     assert seen(up="z").camera.up == (0, 0, 1)
     assert seen(up="z").camera.eye != plain.camera.eye
+    assert seen(up="z").origin.camera == "a camera that sees everything, z up"
+    upright = load_scene({"nff": "own.nff", "up": "y"})
+    assert upright.camera.up == (0, 1, 0) and upright.origin.camera == "its own camera, y up"
     nff = load_scene("own.nff")
     assert (nff.camera.eye, nff.camera.resolution) == ((1, 2, 3), (64, 32))
     assert nff.origin.view == "seen by its own camera, lit by its own lights"
@@ -77,7 +80,7 @@ def test_parts_of_a_camera_leave_the_rest() -> None:
     assert (camera.eye, camera.at, camera.angle_degrees) == (plain.camera.eye, plain.camera.at, 20)
     scene = seen(camera={"eye": [0, 0, 5], "at": [0, 1, 0]}, up="z")
     assert (scene.camera.eye, scene.camera.at, scene.camera.up) == ((0, 0, 5), (0, 1, 0), (0, 0, 1))
-    assert scene.origin.camera == "a camera as set" and scene.lights == seen(up="z").lights
+    assert scene.origin.camera == "a camera as set, z up" and scene.lights == seen(up="z").lights
     nff = load_scene({"nff": "own.nff", "camera": {"eye": [5, 0, 0]}})
     assert (nff.camera.eye, nff.camera.at, nff.camera.up) == ((5, 0, 0), (0, 0, 0), (0, 0, 1))
     assert nff.camera.resolution == (64, 32) and nff.camera.angle_degrees == 40
@@ -107,6 +110,9 @@ def test_a_camera_of_the_file_by_name_and_by_number() -> None:
     # Its own up is the way it was held there: from elsewhere, y is upwards.
     moved = load_scene({"mesh": "seen.glb", "camera": {"name": "Down", "eye": [3, 1, 0]}})
     assert moved.camera.up == (0, 1, 0)
+    whole = load_scene({"mesh": "seen.glb", "camera": "everything"})
+    assert whole.origin.camera == "a camera that sees everything"
+    assert whole.camera.angle_degrees == 45 and whole.camera.at == (0.5, 0.5, 0)
     assert first.origin.notes == ("camera 'Flat' is left out: orthographic, not perspective",)
 
 
@@ -143,7 +149,7 @@ def test_a_camera_of_the_file_by_name_and_by_number() -> None:
         ("camera", {"at": [0, 5, float("nan")]}, "scene.camera.at: value [0, 5, nan]: expected"),
         ("camera", {"at": [0, 5, 1e31]}, "scene.camera.at: value [0, 5, 1e+31]: expected three"),
         ("camera", {"fov": 3}, "scene.camera: unknown key 'fov': expected one of angle, at, eye"),
-        ("camera", "Top", "a.obj:components: the file has no camera 'Top': expected none, it has"),
+        ("camera", "Top", "a.obj:components: there is no camera 'Top': expected 0 ('everything')"),
         ("camera", -1, "scene.camera.name: value -1: expected the name or number of a camera"),
         ("camera", [0, 1, 2], "scene.camera: value [0, 1, 2]: expected a mapping (key: value)"),
         (
@@ -216,9 +222,10 @@ def test_no_parts() -> None:
 
 
 def test_cameras_that_a_file_with_cameras_has_not() -> None:
-    expected = "expected 0 ('Front'), 1 ('Down')"
-    assert refusal(mesh="seen.glb", camera=2).endswith(f"the file has no camera 2: {expected}")
+    expected = "expected 0 ('Front'), 1 ('Down'), 2 ('everything')"
+    assert refusal(mesh="seen.glb", camera=3).endswith(f"there is no camera 3: {expected}")
     assert refusal(mesh="seen.glb", camera="Flat").endswith(f"no camera 'Flat': {expected}")
+    assert refusal(nff="own.nff", camera="a").endswith("'a': expected parts of its only one")
     assert "or up [0.0, 1.0, 0.0] is along" in refusal(mesh="seen.glb", camera="Down", up="y")
 
 

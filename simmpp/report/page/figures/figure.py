@@ -67,8 +67,11 @@ def figure_data(figure: Figure) -> dict[str, Any]:
     return {"plates": plates}
 
 
-def styles_of(rows: Iterable[Row]) -> dict[str, int]:
-    """A number for the colour of each policy, the same in all figures; the paper's come first."""
-    titles = {row["policy"] for row in rows}
+def styles_of(rows: Iterable[Row], column: str = "policy") -> dict[str, int]:
+    """A number for the colour of each policy, the same in all figures; the paper's come first.
+
+    Likewise of what else a ``column`` holds.
+    """
+    titles = {row[column] for row in rows}
     others = sorted(titles - words.PAPER_WORDS.keys())
     return {title: n for n, title in enumerate([*words.PAPER_WORDS, *others]) if title in titles}

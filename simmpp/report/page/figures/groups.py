@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from simmpp.report.page.figures import accuracy, bar_figures, paper, profit_figures
+from simmpp.report.page.figures import accuracy, bar_figures, folder_figures, paper, profit_figures
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.limits import PointLimits
 
+OVER = "A line is a folder, a panel a dataflow. Click a point to see it in depth."
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
 LIMITS_ID = "accounts"
 LIMITS = (
@@ -41,6 +42,10 @@ FIGURE_GROUPS = (
     FigureGroup(
         *("paper", "The paper's figures", CLICKING, paper.STEMS),
         lambda folder, limits: paper.paper_figures(folder, limits.points),
+    ),
+    FigureGroup(
+        *("folders", "Folders over each other", OVER, folder_figures.STEMS),
+        lambda _, limits: folder_figures.folder_figures(limits.points),
     ),
     FigureGroup(
         *("curves", "Curves", CLICKING, profit_figures.STEMS),

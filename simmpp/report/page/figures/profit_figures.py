@@ -21,6 +21,7 @@ MOST_ABSCISSAS, LEAST_VALUES, MOST_PLATES = 2, 3, 16
 many plates to choose from."""
 HEADROOM = 1.06
 """Factor of room beyond the largest value."""
+POLICY = "policy"
 STEMS = tuple(name.replace("_", "-") for name in ALL)
 
 
@@ -32,6 +33,8 @@ class ProfitData:
     before: Points | None = None
     marked: Mapping[str, frozenset[int]] = field(default_factory=dict)
     """Numbers of points to be looked at, by measure."""
+    lines: str = POLICY
+    """The column whose values are lines; if that is an axis, policies are one in its place."""
 
     @cached_property
     def rows(self) -> list[Row]:
@@ -40,8 +43,13 @@ class ProfitData:
 
     @cached_property
     def axes(self) -> Axes:
-        """The axes along which they differ."""
-        return varying_axes(self.rows, self.points.further)
+        """The axes along which they differ, but for what lines are."""
+        axes = varying_axes(self.rows, (*self.points.further, POLICY))
+        return {name: values for name, values in axes.items() if name != self.lines}
+
+    def called(self, title: str) -> str:
+        """What a line is called."""
+        return words.policy(title) if self.lines == POLICY else title
 
     def found(self, number: int) -> tuple[Points, int]:
         """Which points a number is of, and its number there."""
@@ -170,14 +178,15 @@ def _curves(
     """
     last, marked = len(data.points.profits), data.marked.get(name, frozenset())
     for is_before in (True, False):
-        for title, style in styles_of(data.rows).items():
-            of = [n for n in placed if data.rows[n]["policy"] == title and (n >= last) == is_before]
+        for title, style in styles_of(data.rows, data.lines).items():
+            rows, lines = data.rows, data.lines
+            of = [n for n in placed if rows[n][lines] == title and (n >= last) == is_before]
             numbers: dict[float, int] = {}
             for number in of:
                 numbers.setdefault(placed[number], number)
             if numbers:
                 yield Curve(
-                    words.policy(title),
+                    data.called(title),
                     {x: spreads[n] for x, n in numbers.items()},
                     style=style,
                     rows={} if is_before else numbers,

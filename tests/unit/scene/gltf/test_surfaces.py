@@ -112,6 +112,14 @@ def test_glass(found: Material, kd: float, ks: float, transmittance: float, ior:
     assert values == pytest.approx((kd, ks, transmittance, ior))
 
 
+def test_alpha_that_is_blended() -> None:
+    veil = {"baseColorFactor": [1, 0, 0, 0.25]}
+    found = painted(alphaMode="BLEND", pbrMetallicRoughness=veil)
+    assert (found.kd, found.ks, found.transmittance, found.ior) == (0.25, 0, 0.75, 1)
+    for mode in ("MASK", "OPAQUE"):
+        assert not painted(alphaMode=mode, pbrMetallicRoughness=veil).transmits
+
+
 def test_textures_are_said() -> None:
     file = one_square()
     textured = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}

@@ -1,0 +1,56 @@
+"""Every constant of a machine with what it is and where it comes from, as lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from simmpp.common.strict import expectation, fields_of, inner_class, is_by_name
+from simmpp.machine.constants import Constants
+from simmpp.machine.layers import Layers
+from simmpp.machine.messages import MESSAGE_KINDS
+
+
+class Line(NamedTuple):
+    """One constant."""
+
+    key: str
+    value: str
+    """With its unit."""
+    source: str
+
+
+def lines_of(layers: Layers) -> list[Line]:
+    """All constants; copies of all kinds of messages are one line where they are alike."""
+    lines = [
+        Line(key, _written(key, number), layers.sources[key])
+        for key, number in layers.numbers.items()
+    ]
+    return list(_joined(lines))
+
+
+def _written(key: str, number: int) -> str:
+    """A number with its unit, as the field of that dotted key writes it."""
+    model: Any = Constants
+    parts = key.split(".")
+    while len(parts) > 1:
+        if is_by_name(model, parts[0]):
+            del parts[1]
+        model = inner_class(model, parts.pop(0))
+    expected = expectation(fields_of(model)[parts[0]])
+    return expected.write(number) if expected else str(number)
+
+
+def _joined(lines: list[Line]) -> Iterator[Line]:
+    """``pack.fixed`` for those of each kind of message that say the same."""
+    by_key = {line.key: line for line in lines}
+    for line in lines:
+        first, _, last = line.key.partition(".")
+        kind, _, what = last.partition(".")
+        if kind in MESSAGE_KINDS and what:
+            alike = [by_key.get(f"{first}.{each}.{what}") for each in MESSAGE_KINDS]
+            if {each and each[1:] for each in alike} == {line[1:]}:
+                if kind == MESSAGE_KINDS[0]:
+                    yield line._replace(key=f"{first}.{what}")
+                continue
+        yield line
