@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from simmpp.common.errors import SceneError
+from simmpp.scene.columns import FLAT
 from simmpp.scene.scene import Material, MeshPart, Polygon, Scene, SceneObject
 
 
@@ -52,7 +53,7 @@ def _problem_of_numbers(numbers: Iterable[float]) -> str:
 def _problem_of_object(obj: SceneObject, n_materials: int) -> str:
     if not 0 <= obj.material < n_materials:
         return f"has material {obj.material}, expected one of the {n_materials} materials"
-    if isinstance(obj, Polygon | MeshPart):
+    if isinstance(obj, FLAT):
         shape = np.shape(obj.vertices)
         if len(shape) != 2 or shape[1] != 3:
             return f"has vertices of shape {shape}, expected (n, 3)"
