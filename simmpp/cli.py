@@ -13,6 +13,7 @@ from simmpp.common.errors import InputError, ModelError
 from simmpp.common.interrupts import last_word
 
 COMMANDS = {
+    "init": "Write a configuration to begin with, each key explained.",
     "run": "Compare dataflow policies at one point.",
     "sweep": "Simulate every combination of the values under the key sweep.",
     "report": "Make a page of what sweep, run, bench or reproduce wrote.",
@@ -65,7 +66,7 @@ class Commands(click.Group):
         if ctx.resilient_parsing:  # a shell completes words
             from simmpp.commands.parts.completion import command as with_words
 
-            return with_words(cmd_name, COMMANDS[cmd_name])
+            return with_words(cmd_name)
         module = import_module(f"simmpp.commands.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command

@@ -261,6 +261,9 @@ def random_placement(rng: np.random.Generator, workload: Workload, processors: i
 _POLICY_DRAWS = (*[n for n in POLICIES if n != CEILING] * 5, *[DEFAULT_POLICY] * 5, CEILING)
 
 
+_SAMPLED = tuple({"sampled": t} for t in ("0 ps", "1 ps", "1 ns", "1 us", "1 ms", "never"))
+
+
 def random_policy(rng: np.random.Generator) -> PolicyParameters:
     """Any combination of parameters; replicated seldom, as it sends no messages."""
     shares = (Fraction(12, 100), Fraction(0), Fraction(1, 3), Fraction(1), Fraction(5, 2))
@@ -270,7 +273,7 @@ def random_policy(rng: np.random.Generator) -> PolicyParameters:
         min_load=_pick(rng, (*shares, 0, 1, 2, 7)),
         batch=int(rng.integers(1, 21)),
         ask_at_least=int(rng.integers(1, 9)),
-        load_info=_pick(rng, ("piggyback", "exact", "none")),
+        load_info=_pick(rng, ("piggyback", "piggyback", "exact", "none", "two", *_SAMPLED)),
         refresh_ps=_pick(rng, (None, None, 0, 1, 1000, 10**6)),
         merge_requests=bool(rng.integers(2)),
         packing=_pick(rng, POLICIES[name].packings),

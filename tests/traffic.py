@@ -24,9 +24,14 @@ from simmpp.machine.torus import LINKS
 
 def arrivals_ps(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
     """(n,) when each message arrives; they are given in the order of departures and sources."""
+    a_byte_a_ps = {"link_bytes_per_s": BYTE_PER_PS, "injection_bytes_per_s": UNLIMITED}
+    return arrivals_of_bytes(replace(machine, **a_byte_a_ps), traffic)  # type: ignore[arg-type]
+
+
+def arrivals_of_bytes(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.int64]:
+    """The same at the machine's own bandwidths."""
     case = case_of(OBJECT, [], owners=(), object_bytes=(), shape=machine.shape)
-    a_byte_a_ps = {"header_bytes": 0, "link_bytes_per_s": BYTE_PER_PS}
-    bare = replace(machine, contention=LINKS, injection_bytes_per_s=UNLIMITED, **a_byte_a_ps)
+    bare = replace(machine, contention=LINKS, header_bytes=0)
     parts = (case.workload, bare, case.placement, case.policy)
     state = new_state(*parts, ready_order="depth-first")
     rows = np.zeros(len(traffic), MESSAGE)

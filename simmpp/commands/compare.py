@@ -9,7 +9,7 @@ import click
 from simmpp.commands.parts import options
 from simmpp.commands.parts.folders import FolderArgument, GivenFolder, by_name
 from simmpp.commands.parts.tables import table
-from simmpp.commands.parts.terminal import notice, say
+from simmpp.commands.parts.terminal import at_work, notice, say
 from simmpp.report.page.comparison import Comparison, causes, compared, outcome, write_comparison
 from simmpp.report.page.difference import NAMES, SideBySide, changes_by_measure, line, ranked
 from simmpp.report.page.folder import read_folder
@@ -43,17 +43,19 @@ def compare_command(
     options.writable(out, "--out", ".html")
     paths = _named([before, after, *others])
     arguments = ["BEFORE", *["AFTER"] * (len(paths) - 1)]
-    folders = {
-        name: read_folder(path, argument)
-        for (name, path), argument in zip(paths.items(), arguments, strict=True)
-    }
+    with at_work("reading rows"):
+        folders = {
+            name: read_folder(path, argument)
+            for (name, path), argument in zip(paths.items(), arguments, strict=True)
+        }
+        pairs = compared(folders)
     for warned in warnings_of_each(folders):
         notice(str(warned))
-    pairs = compared(folders)
     for pair in pairs:
         _print(pair, heading=f"{pair.name}:" if len(pairs) > 1 else "")
     if out is not None:
-        write_comparison(folders, out)
+        with at_work("writing the page"):
+            write_comparison(folders, out)
         say(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
     for pair in pairs:
         of = f"{pair.name}: " if len(pairs) > 1 else ""

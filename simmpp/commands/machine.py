@@ -18,7 +18,6 @@ from simmpp.machine.constants import Constants
 from simmpp.machine.layers import Layers
 from simmpp.machine.listing import lines_of
 from simmpp.machine.presets import (
-    DEFAULT_PRESET,
     SUFFIXES,
     layered,
     load_own,
@@ -28,7 +27,7 @@ from simmpp.machine.presets import (
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import LINKS, NO_CONTENTION
 
-FIT = "fit"
+FIT, FITTED_ON = "fit", "cpu-cluster"
 _FREE = f"a choice, not a constant; {LINKS}: each link and port serves one message at a time"
 
 
@@ -41,7 +40,7 @@ _FREE = f"a choice, not a constant; {LINKS}: each link and port serves one messa
 @click.argument("preset", required=False, metavar="[PRESET | FILE | fit]")
 @click.argument("table", required=False)
 @options.path("--out", "With fit: the file to write, to be named by the key machine.file.")
-@click.option("--based-on", help=f"With fit: preset of all other constants.  [{DEFAULT_PRESET}]")
+@click.option("--based-on", help=f"With fit: preset of all other constants.  [{FITTED_ON}]")
 def machine_command(
     preset: str | None, table: str | None, out: Path | None, based_on: str | None
 ) -> None:
@@ -64,7 +63,7 @@ def machine_command(
         machines = ((name, load_preset(name).description) for name in preset_names())
         say(texts(("machine", "description"), machines, whole=1))
     elif preset == FIT:
-        _fit(table, out, DEFAULT_PRESET if based_on is None else based_on)
+        _fit(table, out, FITTED_ON if based_on is None else based_on)
     elif preset.endswith(SUFFIXES):
         _print_file(preset)
     else:

@@ -9,7 +9,7 @@ import click
 
 from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.tables import table
-from simmpp.commands.parts.terminal import notice, say, wrote
+from simmpp.commands.parts.terminal import at_work, notice, say, wrote
 from simmpp.commands.parts.tracing import workload as workload_of
 from simmpp.common.errors import ConfigError
 from simmpp.common.folders import MODEL
@@ -81,7 +81,8 @@ def model_command(
     if grid.left_out:
         notice(f"the model takes {', '.join(grid.left_out)} as set outside of the sweep")
     workload = workload_of(config)
-    times = model_times(config, workload, grid, imbalance=imbalance)
+    with at_work("evaluating the model"):
+        times = model_times(config, workload, grid, imbalance=imbalance)
     method = MEASURED if config.settings.method == MEASURED else ANALYTICAL
     rows = rows_of(times, workload.name, method, 0.0 if method == MEASURED else imbalance)
     columns = ("processors", "fraction", "object_ps", "ray_ps", "ray_over_object", "winner")
@@ -94,7 +95,9 @@ def model_command(
 
         machine = config.preset
         heading = f"Analytical model of Nebel 1998, {workload.name}, {machine}"
-        wrote(*write_figure2(config, workload, rows, heading, out, ratios))
+        with at_work("drawing"):
+            files = write_figure2(config, workload, rows, heading, out, ratios)
+        wrote(*files)
 
 
 def _ratios(texts: tuple[str, ...]) -> tuple[tuple[str, float], ...]:

@@ -10,7 +10,7 @@ import click
 
 from simmpp.commands.parts import options
 from simmpp.commands.parts.folders import NAMED, FolderArgument, GivenFolder, by_name
-from simmpp.commands.parts.terminal import notice, progress_bars
+from simmpp.commands.parts.terminal import at_work, notice, progress_bars
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted
 from simmpp.report.page.beside import FIGURES_FOLDER
@@ -63,15 +63,17 @@ def report_command(
     paths = by_name(folders)
     if live:
         _follow(paths, out)
-    folder = _read(paths, folders[0].name, (out or Path(PAGE)).parent)
-    report = report_of(folder)
+    with at_work("reading rows"):
+        folder = _read(paths, folders[0].name, (out or Path(PAGE)).parent)
+        report = report_of(folder)
     stills = stills_of(report.figures, names)
     page = out or folder.path / PAGE
     to = page.parent / FIGURES_FOLDER
     if stills:
         options.claim(to, "DIR")  # a sweep may be at work in DIR itself
     options.folder(page.parent, "DIR")
-    write_page(report, stills=[still.stem for still in stills], path=page)
+    with at_work("writing the page"):
+        write_page(report, stills=[still.stem for still in stills], path=page)
     click.echo(f"{page}: {len(folder.rows)} rows, {page.stat().st_size / 1e6:.1f} MB")
     for warned in report.warnings():
         notice(str(warned))

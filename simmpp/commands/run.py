@@ -15,11 +15,21 @@ from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
-from simmpp.commands.parts.terminal import FAILED, go_on, notice, progress_bars, say, wrote
+from simmpp.commands.parts.terminal import (
+    FAILED,
+    at_work,
+    go_on,
+    notice,
+    progress_bars,
+    say,
+    warn,
+    wrote,
+)
 from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
+from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
@@ -101,6 +111,7 @@ def run_command(
     check_timeline(timeline, window_ps)
     if figures != out:
         options.claim(figures, "--figures")
+    warn(config, is_swept=False)
     settings = config.settings
     if settings.sweep or settings.tolerance is not None:
         notice(
@@ -130,6 +141,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
     _print(point, runs)
+    _warn_of_window(runs, looks)
     print_reading(config)
     _print_files(out, looks)
     if verify:
@@ -179,6 +191,19 @@ def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
         say(note)
 
 
+def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
+    """Say for which runs a timeline has nothing, as they are over before its window begins."""
+    start_ps = looks.window_ps[0] if looks.window_ps else 0
+    over = [
+        f"{run.parameters.title} at {format_ps(run.result.makespan_ps)}"
+        for run in runs
+        if run.result.makespan_ps <= start_ps
+    ]
+    if over and looks.timeline:
+        told = f"nothing happens from {format_ps(start_ps)} on: {', '.join(over)} ended"
+        notice(f"warning: --timeline-window: {told}")
+
+
 def _print_files(out: Path | None, looks: Looks) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
@@ -192,8 +217,9 @@ def _print_files(out: Path | None, looks: Looks) -> None:
 
 def _write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
-    scene = scene_of(point.config.ray_source, "--picture")()
-    save_png(render(scene, point.config.picture, point.workload), path)
+    with at_work("drawing the picture"):
+        scene = scene_of(point.config.ray_source, "--picture")()
+        save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
@@ -203,7 +229,8 @@ def _verify(point: Point, runs: list[PolicyRun]) -> None:
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
-        problem = verify(scene, point.config.picture, point.workload, rays, objects)
+        with at_work(f"verifying {run.parameters.title}"):
+            problem = verify(scene, point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem is not None

@@ -10,7 +10,7 @@ import click
 from simmpp.commands.parts import options
 from simmpp.commands.parts.inputs import config_of
 from simmpp.commands.parts.tables import texts
-from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, at_work, go_on, say, wrote
 from simmpp.common.files import write_text
 from simmpp.common.units import counted, format_bytes
 from simmpp.config.config import Config
@@ -54,7 +54,8 @@ def scene_command(
     options.writable(nff, "--nff", ".nff")
     options.writable(preview, "--preview", ".png")
     config = config_of(spec, overrides)
-    scene = scene_of(config.ray_source, "scene")()
+    with at_work(f"reading {spec}"):
+        scene = scene_of(config.ray_source, "scene")()
     _list(scene, None if all_objects else OBJECTS_SHOWN)
     if nff:
         write_text(write_nff(scene), nff)

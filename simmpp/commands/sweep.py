@@ -68,13 +68,14 @@ def sweep_command(
     from simmpp.commands.parts.own_policies import tell_files
     from simmpp.commands.parts.progress import progress_of_sweep
     from simmpp.commands.parts.sweep_result import print_result
-    from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say
+    from simmpp.commands.parts.terminal import announce_compilation, go_on, notice, say, warn
     from simmpp.commands.reading import print_readings_of_sweep
     from simmpp.config.config import load_config
     from simmpp.sweeps.sweep import run_sweep
 
     config = load_config(config_path, (*overrides, *engine), may_run=may_run)
     tell_files(config)
+    warn(config, is_swept=True)
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()

@@ -10,7 +10,7 @@ import numpy as np
 from simmpp.commands.parts import options
 from simmpp.commands.parts.inputs import config_of
 from simmpp.commands.parts.tables import table
-from simmpp.commands.parts.terminal import OBJECTS_SHOWN, go_on, say, wrote
+from simmpp.commands.parts.terminal import OBJECTS_SHOWN, at_work, go_on, say, wrote
 from simmpp.commands.parts.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
@@ -50,7 +50,8 @@ def workload_command(
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
     rays = workload(config_of(spec, overrides))
     if export:
-        export_workload(rays, export)
+        with at_work(f"writing {export}"):
+            export_workload(rays, export)
     _list(rays, None if all_objects else OBJECTS_SHOWN)
     if export:
         wrote(export)

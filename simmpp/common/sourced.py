@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from simmpp.common.places import KeyPath, Place, misplaced
+from simmpp.common.yamlfile import written
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ def values_of(
             path and source.strip() and not others
         ):
             key = ".".join(map(str, path))
-            cited.texts[key], cited.sources[key] = str(value), " ".join(source.split())
+            cited.texts[key], cited.sources[key] = written(value), " ".join(source.split())
             return value
         case dict() if "value" not in node or not path:  # the whole is no leaf
             return {

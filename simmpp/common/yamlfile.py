@@ -49,6 +49,17 @@ def read_yaml(path: Path) -> Document:
     return parse_yaml(yaml_text(path), str(path))
 
 
+def written(value: object) -> str:
+    """A value as YAML has it on one line: ``{cells: 8}``, ``false``; texts are left as they are."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {written(child)}' for key, child in value.items())}}}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(written, value))}]"
+    if value is None or isinstance(value, bool):
+        return {None: "null", True: "true", False: "false"}[value]
+    return str(value)
+
+
 def yaml_text(path: Path) -> str:
     """The text of a YAML file.
 

@@ -25,12 +25,14 @@ from simmpp.common.strict import (
     mark_of,
 )
 from simmpp.common.units import shown
+from simmpp.common.yamlfile import written
 from simmpp.config.overrides import key_path
 from simmpp.config.reading import MACHINE, POLICY, Reading, load_reading
 from simmpp.config.settings import DEFAULT_READING, Settings
 from simmpp.machine.constants import CopiesConstants
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset
 
+REQUIRED = "(required)"
 BEGIN, END = "<!-- keys: generated -->", "<!-- /keys -->"
 NAME = "NAME"
 """Stands in a key for any name of the user's."""
@@ -66,7 +68,7 @@ def _within(cls: type, prefix: str, *, of_one_kind: bool) -> Iterator[Key]:
             mapping = "a mapping of the keys below"
             expected = Expect(f"{short.text}, or {mapping}" if short else mapping)
         default = "" if inner else default_of(f"{prefix}{key}", expected, field.get_default())
-        default = "(required)" if field.is_required() else default
+        default = REQUIRED if field.is_required() else default
         of_kind = of_one_kind or (cls is CopiesConstants and inner is not None)
         meaning, pointer = " ".join((field.description or "").split()), f"{holder}/properties/{key}"
         yield Key(f"{prefix}{key}", default, expected, meaning, pointer, of_kind)
@@ -80,10 +82,12 @@ def default_of(name: str, expected: Expect, value: Any, reading: Reading | None 
     reading = reading or load_reading(DEFAULT_READING)
     part, _, key = name.partition(".")
     default = _written(name, expected, value)
-    texts = [str(reading.values.get(part, {}).get(key, default))]
+    texts = [written(reading.values.get(part, {}).get(key, default))]
     if part == POLICY:
         of_policies = reading.policies.items()
-        texts += [f"{said[key]} for {policy}" for policy, said in of_policies if key in said]
+        texts += [
+            f"{written(said[key])} for {policy}" for policy, said in of_policies if key in said
+        ]
         texts = [text for text in texts if not text.startswith(f"{default} for ")]
     costs = reading.costs.get(DEFAULT_PRESET) if part == MACHINE else None
     if costs and (text := costs.text(key, expected.write)):

@@ -171,8 +171,9 @@ def _refuse_choices(values: Mapping[str, Any], places: Mapping[KeyPath, Place]) 
         below = values.get(part)
         for name, given in below.items() if isinstance(below, dict) else ():
             if chosen := [key for key in choices if isinstance(given, dict) and key in given]:
-                problem = "expected none: readings do not set it"
-                raise misplaced((part, name, chosen[0]), problem, places)
+                path = (part, name, chosen[0])
+                key = "" if path in places else f"{chosen[0]}: "  # of a section as one value
+                raise misplaced(path, f"{key}expected none: readings do not set it", places)
 
 
 def _with_names(values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from simmpp.common.yamlfile import written
 from simmpp.config.axes import MOST_VALUES, NAME, POINTS, UNSWEPT
 from simmpp.config.keys import NAME as ANY
 from simmpp.config.keys import keys
@@ -29,7 +30,7 @@ def _drop_defaults(schema: dict[str, Any], reading: Reading) -> None:
         if part != MACHINE:
             _, _, holder, _, key = keys()[f"{part}.{key}"].pointer.split("/")
             described = schema["$defs"][holder]["properties"][key]
-            if str(described.get("default")) != line.value:
+            if written(described.get("default")) != line.value:
                 described.pop("default", None)
 
 

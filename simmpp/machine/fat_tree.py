@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel
 from simmpp.common.errors import ConfigError
+from simmpp.common.units import counted
 from simmpp.machine.machine import FatTree, Machine
 from simmpp.machine.transfer import slower
 
@@ -74,7 +75,7 @@ class Tree:
     def __str__(self) -> str:
         of = self.shape
         ratio = f", {of.oversubscription}:1 at each" if of.oversubscription > 1 else ""
-        return f"fat-tree of {self.n_levels} levels, arity {of.arity}{ratio}"
+        return f"fat-tree of {counted(self.n_levels, 'level')}, arity {of.arity}{ratio}"
 
     @property
     def n_levels(self) -> int:

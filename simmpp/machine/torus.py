@@ -78,7 +78,7 @@ class Torus:
     @property
     def diameter(self) -> int:
         """Most links between two PEs."""
-        return sum(size // 2 for size in self.sizes)
+        return across(self.sizes)
 
     @property
     def longest_ps(self) -> int:
@@ -146,6 +146,24 @@ def default_shape(processors: int) -> tuple[int, int, int]:
         if y * y * z <= processors and processors % (y * z) == 0
     )
     return min(shapes, key=lambda shape: (sum(shape), shape))
+
+
+def rounder(processors: int) -> list[int]:
+    """The nearest numbers of PEs, below and above, whose torus is at most half as far across.
+
+    None are looked for beyond an eighth of the number; none if it has a round torus itself.
+    """
+    most, reach = across(default_shape(processors)) // 2, processors // 8
+    found = []
+    for way in (-1, 1):
+        near = (processors + way * n for n in range(1, reach + 1))
+        found += [nb for nb in near if across(default_shape(nb)) <= most][:1]
+    return found
+
+
+def across(shape: tuple[int, int, int]) -> int:
+    """Most links between two PEs of a torus."""
+    return sum(size // 2 for size in shape)
 
 
 @kernel

@@ -9,10 +9,11 @@ import numpy as np
 
 from simmpp.common.randomness import generator
 from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
-from simmpp.placement.owners import owners
+from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.residents import Ids, as_csr, kept_count, replicas, resident_count
+from simmpp.placement.residents import as_csr, kept_count, replicas, resident_count
+from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
 
 
@@ -28,16 +29,26 @@ def place(
     require_kind("memory", memory, Memory)
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
-    owner_of = owners(rules.owners, workload.object_centroids, processors, seed)
-    offsets, objects = replicas(workload, owner_of, processors, memory, seed)
+    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    owner_of = _owners(rules, workload, starts_on, processors, seed)
+    offsets, objects = replicas(workload, owner_of, starts_on, processors, memory, seed)
     return Placement(
         processors=processors,
         owners=owner_of,
         replica_offsets=offsets,
         replica_objects=objects,
         transient=kept_count(memory, workload.n_objects, len(objects), processors),
-        pixel_pes=pixel_pes(rules.pixels, workload.picture, processors, seed),
+        pixel_pes=starts_on,
+        transient_bytes=memory.fetch or 0,
     )
+
+
+def _owners(
+    rules: PlacementRules, workload: Workload, starts_on: Ids, processors: int, seed: int
+) -> Ids:
+    if rules.owners == "used":
+        return most_using(UsesByPE(workload, starts_on), workload.n_objects, processors)
+    return owners(rules.owners, workload.object_centroids, processors, seed)
 
 
 def draws(memory: Memory, rules: PlacementRules) -> bool:
@@ -67,8 +78,8 @@ def rotated(
     Source: systematic sampling (Cochran 1977, Sampling Techniques, chapter 8), along a sweep.
     """
     n_objects = workload.n_objects
-    owner_of = owners(rules.owners, workload.object_centroids, processors, seed)
     starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    owner_of = _owners(rules, workload, starts_on, processors, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]
     held = [_turns(_circle(owner_of, pe, seed), owner_of, counts) for pe in range(processors)]
     return [

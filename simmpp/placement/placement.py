@@ -31,8 +31,8 @@ def cut(n: int, parts: int) -> NDArray[np.int32]:
     return np.repeat(np.arange(parts, dtype=np.int32), np.diff(cuts))
 
 
-Owners = Literal["bisection", "morton", "round_robin", "random"]
-Residents = Literal["random", "nearest", "hot"]
+Owners = Literal["bisection", "morton", "round_robin", "random", "used"]
+Residents = Literal["random", "nearest", "hot", "used"]
 Pixels = Literal["blocks", "rows", "tiles", "interleaved", "random"]
 
 
@@ -112,11 +112,18 @@ class Memory:
     bytes: Size | None = None
     """The other way to say it: room for resident objects, in place of the fraction."""
     residents: Residents = "random"
-    """Which objects are resident besides a PE's own."""
+    """Which objects are resident besides a PE's own: `hot`, most used in a coarse pre-pass; `used`,
+    most used there by the PE's own pixels, for their size."""
     transient: Transient = 0
     """Fetched objects kept besides the resident ones (least recently used leaves): a number; a
     share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
     are resident in the mean). The replicated scene fetches none."""
+
+    fetch: Size | None = None
+    """The other way to say it: room for fetched objects, in place of a number of them."""
+    hot: Share = Fraction(0)
+    """Share of the objects, those most used for their size in a coarse pre-pass, that come first on
+    every PE; they count as residents."""
 
     if TYPE_CHECKING:  # arguments take more than fields hold
 
@@ -126,11 +133,15 @@ class Memory:
             bytes: int | str | None = ...,
             residents: Residents = ...,
             transient: Fraction | int | str = ...,
+            fetch: int | str | None = ...,
+            hot: Fraction | float | str = ...,
         ) -> None: ...
 
     @property
     def kept(self) -> Fraction | int | Literal["x"]:
         """The transient share or number of objects; ``x`` only where no fraction says which."""
+        if self.fetch is not None:
+            return 0
         by_fraction = self.transient == AS_FRACTION and self.bytes is None
         return self.fraction if by_fraction else self.transient
 
@@ -140,6 +151,8 @@ class Memory:
         """Of what users write; Python's ``replace`` always passes both."""
         if isinstance(given, dict) and "fraction" in given and given.get("bytes") is not None:
             raise mistake("expected fraction or bytes, got both")
+        if isinstance(given, dict) and "transient" in given and given.get("fetch") is not None:
+            raise mistake("expected transient or fetch, got both")
         return given
 
     @model_serializer(mode="wrap")
@@ -147,6 +160,8 @@ class Memory:
         plain: dict[str, Any] = handler(self)
         if self.bytes is not None:
             del plain["fraction"]
+        if self.fetch is not None:
+            del plain["transient"]
         return plain
 
 
@@ -155,7 +170,8 @@ class PlacementRules:
     """How owners and pixels are chosen."""
 
     owners: Owners = "bisection"
-    """How objects are dealt to their owners."""
+    """How objects are dealt to their owners; `used`: to the PE whose pixels use them most in a
+    coarse pre-pass."""
     pixels: PixelRule = "blocks"
     """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
     squares of so many pixels along each side (cells)."""
@@ -179,6 +195,8 @@ class Placement:
     """Number of fetched objects that a PE's transient memory holds."""
     pixel_pes: NDArray[np.int32]
     """(n0,) int32: the PE that each primary ray starts on."""
+    transient_bytes: int = 0
+    """Bytes of fetched objects that it holds, where a size says so; else 0."""
 
     @property
     def effective_fraction(self) -> float:

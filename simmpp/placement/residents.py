@@ -11,25 +11,24 @@ from numpy.typing import NDArray
 from simmpp.common.randomness import generator
 from simmpp.common.units import half_up
 from simmpp.placement.placement import Memory, Residents
+from simmpp.placement.uses import Ids, UsesByPE, uses
 from simmpp.workload.workload import Workload
 
-COARSE_STEP = 4
-"""``hot`` counts the itineraries of every 4th row's every 4th pixel (ESTIMATE: a 1/16 pre-pass)."""
-
-Ids = NDArray[np.int32]
 Ranking = Callable[[int], Ids]
 """All objects that a PE does not own, the first to be replicated first."""
 
 
 def replicas(
-    workload: Workload, owners: Ids, processors: int, memory: Memory, seed: int
+    workload: Workload, owners: Ids, pixel_pes: Ids, processors: int, memory: Memory, seed: int
 ) -> tuple[NDArray[np.int64], Ids]:
     """Replicas of each PE as CSR: offsets (nb + 1,) int64 and object ids int32.
 
     A PE's replicas are a prefix of one ranking of the objects it does not own, so a larger memory
     holds all that a smaller one held.
     """
-    ranking = _rankings(memory.residents, workload, owners, seed)
+    ranking = _rankings(memory.residents, workload, owners, pixel_pes, seed)
+    if memory.hot > 0:
+        ranking = _hot_first(ranking, memory.hot, workload, owners)
     n_own = np.bincount(owners, minlength=processors)
     own_bytes = np.zeros(processors, np.int64)
     np.add.at(own_bytes, owners, workload.object_bytes)
@@ -74,24 +73,46 @@ def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> I
     return ranked[: int(np.searchsorted(total, room_bytes, side="right"))]
 
 
-def _rankings(rule: Residents, workload: Workload, owners: Ids, seed: int) -> Ranking:
+def _hot_first(ranking: Ranking, share: Fraction, workload: Workload, owners: Ids) -> Ranking:
+    """The most used objects for their size before all others, on every PE the same."""
+    n_hot = resident_count(share, workload.n_objects)
+    per_byte = uses(workload) / np.maximum(workload.object_bytes, 1)
+    hot = np.argsort(-per_byte, kind="stable")[:n_hot].astype(np.int32)
+
+    def ranked(pe: int) -> Ids:
+        others = ranking(pe)
+        return np.concatenate([hot[owners[hot] != pe], others[~np.isin(others, hot)]])
+
+    return ranked
+
+
+def _rankings(
+    rule: Residents, workload: Workload, owners: Ids, pixel_pes: Ids, seed: int
+) -> Ranking:
     ids = np.arange(workload.n_objects, dtype=np.int32)
     if rule == "random":
         return lambda pe: generator(seed, "residents", pe).permutation(ids[owners != pe])
     if rule == "hot":
-        uses = _coarse_uses(workload)
-        hottest = ids[np.lexsort((ids, -uses))]
+        hottest = ids[np.lexsort((ids, -uses(workload)))]
         return lambda pe: hottest[owners[hottest] != pe]
+    if rule == "used":
+        return _used(UsesByPE(workload, pixel_pes), workload, owners)
     return lambda pe: _nearest(workload.object_centroids, owners, pe)
 
 
-def _coarse_uses(workload: Workload) -> NDArray[np.int64]:
-    """How often the rays of every 4th row's every 4th pixel test each object: (N,) int64."""
-    rows, columns = np.divmod(workload.pixels, workload.picture[1])
-    sampled = (rows % COARSE_STEP == 0) & (columns % COARSE_STEP == 0)
-    lengths = np.diff(workload.itinerary_offsets)
-    tested = workload.itinerary_objects[np.repeat(sampled, lengths)]
-    return np.bincount(tested, minlength=workload.n_objects)
+def _used(by_pe: UsesByPE, workload: Workload, owners: Ids) -> Ranking:
+    """Objects by their uses on the PE for their size, then by those on all.
+
+    Source: what a processor used last stays with it (Green and Paddon 1990), seen beforehand.
+    """
+    n_bytes, ids = np.maximum(workload.object_bytes, 1), np.arange(workload.n_objects)
+    on_all = uses(workload) / n_bytes
+
+    def ranked(pe: int) -> Ids:
+        order = np.lexsort((ids, -on_all, -(by_pe.of(pe) / n_bytes))).astype(np.int32)
+        return order[owners[order] != pe]
+
+    return ranked
 
 
 def _nearest(centroids: NDArray[np.float64], owners: Ids, pe: int) -> Ids:

@@ -13,9 +13,9 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from matplotlib.image import imsave
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from PIL import Image
 
 from simmpp.common.files import replaced
 from simmpp.plot.curves import PART_COLOURS, Bars, Curve, Panel, Scale, Stated
@@ -55,8 +55,12 @@ SETTINGS: Any = {
     "hatch.linewidth": 0.4,
     "hatch.color": "0.72",
     "font.size": 9,
+    "axes.titley": 1.0,  # else each title is placed four times, after all ticks
 }
 """Equal figures give equal bytes: ids in SVG are hashes with this salt, not random."""
+PNG_LEVEL = 3
+"""Of compression: takes half the time of the usual 6 for a tenth more bytes, which leaving out
+the opacity saves again (tests/bench/README.md)."""
 
 
 class Drawing(Figure):
@@ -92,15 +96,17 @@ def drawing(panels: Sequence[Panel | Bars]) -> Drawing:
 def save(figure: Figure, stem: Path) -> list[Path]:
     """Write a figure as ``stem``.png and ``stem``.svg, without dates.
 
-    ``Figure.savefig`` would draw each twice, once only to lay it out; the bytes are the same.
+    ``Figure.savefig`` would draw each twice, once only to lay it out; what one sees is the same.
     """
     png, svg = (stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg"))
     dots_of_images = figure.dpi
     figure.set_dpi(DOTS_PER_INCH)
     raster: Any = FigureCanvasAgg(figure)
     raster.draw()
+    picture = Image.frombuffer("RGBA", raster.get_width_height(), raster.buffer_rgba())
+    dots = (DOTS_PER_INCH, DOTS_PER_INCH)
     with replaced(png) as part:
-        imsave(part, raster.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
+        picture.convert("RGB").save(part, format="png", dpi=dots, compress_level=PNG_LEVEL)
     figure.set_layout_engine("none")  # laid out once; the second file is to be the same
     figure.set_dpi(dots_of_images)
     vector: Any = FigureCanvasSVG(figure)
@@ -128,7 +134,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     if any(curve.notes for curve in panel.curves):
         axes.margins(y=0.14)  # room for what is written above the highest point
     title = f"{panel.title}\n{panel.note}" if panel.note else panel.title
-    axes.set_title(title, fontsize=9, y=1)  # else it is placed four times, after all ticks
+    axes.set_title(title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
     if panel.curves:

@@ -87,7 +87,7 @@ def _line(curve: Curve, style: int, panel: Panel) -> Drawn:
         "mode": mode,
         "line": line,
         "marker": _markers(curve, xs, style),
-        **(_ends(spreads) if panel.x.names else {}),
+        **(_ends(spreads) if panel.x.names and any(s.low < s.high for s in spreads) else {}),
         **(_noted(curve, xs) if curve.notes else {}),
     }
 

@@ -49,6 +49,8 @@ from simmpp.policy.written import (
     FILE,
     LOAD_INFO,
     MIN_LOAD,
+    NEVER,
+    NEVER_PS,
     NUMBERS,
     LoadInfo,
     own_policy,
@@ -56,6 +58,7 @@ from simmpp.policy.written import (
     parse_load_info,
     parse_min_load,
     parse_numbers,
+    parse_period,
 )
 
 POLICIES: dict[str, Policy] = {
@@ -126,11 +129,19 @@ class PolicyParameters:
         Expect(LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
     ] = "piggyback"
     """How a PE knows the load of others: from headers (the paper), exactly, or not at all; with
-    `refresh`, its own load is also sent to peers that were sent nothing for that long."""
+    `refresh`, its own load is also sent to peers that were sent nothing for that long; `sampled`:
+    all know all loads as they were at the last multiple of that time (or `never` but at the
+    start); `two`: exactly, but a policy with several candidates looks at two at random only."""
     refresh_ps: Annotated[
         SkipJsonSchema[Time | None], Field(validation_alias=AliasPath("load_info", "refresh"))
     ] = None
     """That time. Policies whose send rule reads no load ignore it, as they ignore load_info."""
+    sample_ps: Annotated[
+        SkipJsonSchema[int | None],
+        parsed_by(parse_period),
+        Field(validation_alias=AliasPath("load_info", "sampled"), validate_default=True),
+    ] = None
+    """With load_info sampled: the time between two samples of all loads."""
     merge_requests: Switch = True
     """One request per missing object in flight; false sends one request per waiting ray."""
     packing: Packing = "none"
@@ -160,6 +171,7 @@ class PolicyParameters:
             ask_at_least: int = ...,
             load_info: LoadInfo | dict[str, str] = ...,
             refresh_ps: int | str | None = ...,
+            sample_ps: int | str | None = ...,
             merge_requests: bool = ...,
             packing: Packing = ...,
             file: str | PolicyFile | Policy | None = ...,
@@ -182,6 +194,13 @@ class PolicyParameters:
             return given
         named = {**keys, "file": own, "name": _OwnName(policy.name)}
         return ArgsKwargs(given.args, named) if isinstance(given, ArgsKwargs) else named
+
+    @field_validator("sample_ps")
+    @classmethod
+    def _has_a_period(cls, sample_ps: int | None, others: ValidationInfo) -> int | None:
+        if (sample_ps is None) == (others.data.get("load_info") == "sampled"):
+            raise mistake("load_info: expected a period with sampled, such as {sampled: 5 ms}")
+        return sample_ps
 
     @field_validator("packing")
     @classmethod
@@ -238,6 +257,8 @@ class PolicyParameters:
         plain: dict[str, Any] = handler(self)
         if refresh := plain.pop("refresh_ps", None):
             plain["load_info"] = {"refresh": refresh}
+        if (period := plain.pop("sample_ps", None)) is not None:
+            plain["load_info"] = {"sampled": NEVER if period == NEVER_PS else f"{period} ps"}
         return {key: plain[key] for key in plain if key not in ("file", "set")} | self.own
 
     @property

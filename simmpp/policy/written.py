@@ -13,9 +13,11 @@ from simmpp.common.validate import MOST_COUNT, whole
 from simmpp.policy.file import PolicyFile, read_policy
 from simmpp.policy.policy import Policy
 
-LoadInfo = Literal["piggyback", "exact", "none"]
+LoadInfo = Literal["piggyback", "exact", "none", "sampled", "two"]
 
-LOAD_INFO = "piggyback, exact, none or {refresh: 5 ms}"
+LOAD_INFO = "piggyback, exact, none, two, {refresh: 5 ms} or {sampled: 5 ms}"
+NEVER, NEVER_PS = "never", 1 << 62
+"""A period that no run reaches the end of."""
 MIN_LOAD = "a share of n0 / nb such as 12%, or a number of rays"
 FILE = "the Python file of a policy of one's own, such as mine.py"
 NUMBERS = "a mapping of the policy's own numbers, such as {eagerness: 8}"
@@ -42,14 +44,27 @@ def parse_load(
 
 
 def parse_load_info(value: object) -> object:
-    """One of the words; ``{refresh: 5 ms}`` is piggyback, and sets ``refresh_ps`` as well."""
+    """One of the words; ``{refresh: 5 ms}`` is piggyback, and sets ``refresh_ps`` as well.
+
+    So does ``{sampled: 5 ms}`` with ``sample_ps``; the word alone says no period.
+    """
     if isinstance(value, dict) and set(value) == {"refresh"}:
         with suppress(ConfigError):
             picoseconds(value["refresh"])
             return "piggyback"
+    if isinstance(value, dict) and set(value) == {"sampled"}:
+        parse_period(value["sampled"])
+        return "sampled"
     if not isinstance(value, str) or value not in get_args(LoadInfo):
         raise ConfigError(f"value {shown(value)}: expected {LOAD_INFO}")
     return value
+
+
+def parse_period(value: object) -> int | None:
+    """Picoseconds, or ``never``."""
+    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value >= 0):
+        return value
+    return NEVER_PS if value == NEVER else picoseconds(value)
 
 
 def own_policy(value: object) -> object:

@@ -14,12 +14,13 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 - *bandwidth*: the rest of that, the part that flights are bytes on a link.
 
 Busy is who computes or communicates. The last four are what PEs wait; where only sums over PEs are
-known, as in rows of sweeps, they are one part, *waiting*. Where the machine's constants are not
-known, startups and copying are one, *communication*. Startups are those of all messages sent, so of
-the few that are still in flight at the end, too, and no more than all communication.
+known, as in rows of sweeps, they are one part, *waiting*, or *imbalance* if no message was sent.
+Where the machine's constants are not known, startups and copying are one, *communication*. Startups
+are those of all messages sent, so of the few that are still in flight at the end, too, and no more
+than all communication.
 
-If a part were gone the makespan would be shorter by its share at most: the other parts are means
-over PEs, and what one PE saves another may have to wait for.
+Parts are means over PEs and say where the time is; without one of them the makespan may be shorter
+by more than that, as where the busiest PE has most of it, or by less, as where others wait instead.
 """
 
 from __future__ import annotations
@@ -132,7 +133,8 @@ def limits_of(
 def together(of_seeds: Iterable[Limits]) -> Limits:
     """The parts of several seeds, added up."""
     limits = list(of_seeds)
-    parts = {part: sum(of.parts_ps[part] for of in limits) for part in limits[0].parts_ps}
+    there = [part for part in PARTS if any(part in of.parts_ps for of in limits)]
+    parts = {part: sum(of.parts_ps.get(part, 0) for of in limits) for part in there}
     return Limits(parts, limits[0].help)
 
 
@@ -156,7 +158,7 @@ def _waits(
 ) -> dict[str, int]:
     """The parts of waiting."""
     if costs is None or not len(compute_ps):
-        return {WAITING: numbers["waiting_ps"]}
+        return {WAITING if numbers["messages"] else IMBALANCE: numbers["waiting_ps"]}
     busy_ps = sorted(c + m for c, m in zip(compute_ps, communication_ps, strict=True))
     next_ps = max(nb * busy_ps[-2] if nb > 1 else 0, sum(busy_ps))  # times nb, as all the others
     nobody_ps = nb * (numbers["makespan_ps"] - busy_ps[-1])
@@ -204,5 +206,5 @@ def _help(numbers: Numbers, is_owner: bool) -> dict[str, str]:
         IMBALANCE: deal,
         LATENCY: "more rays at once on each PE: fewer PEs, a larger picture",
         BANDWIDTH: f"faster links, or fewer bytes: {lighter}",
-        WAITING: "simmpp run --out tells what for",
+        WAITING: "find out for what, as simmpp run --out tells",
     }

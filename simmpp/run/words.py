@@ -96,6 +96,11 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def uncapital(text: str) -> str:
+    """The first letter small, the others as they are."""
+    return text[:1].lower() + text[1:]
+
+
 def span(values: Iterable[float]) -> str:
     """``"1.3 to 1.71"``; one number where all are the same."""
     ordered = sorted(value for value in values if is_number(value))
@@ -106,10 +111,10 @@ def span(values: Iterable[float]) -> str:
 
 
 def values(name: str, cells: list[Any]) -> str:
-    """``"8, 64 PEs"``, ``"memory for 5 %, 10 % of the scene"``, ``"mountain:4, rings:2"``."""
+    """``"8 and 64 PEs"``, ``"memory for 5 % and 10 % of the scene"``, ``"rings:2 and tetra:4"``."""
     if name == "scene" or "" in cells:
-        return ", ".join(said(name, cell) for cell in cells)
-    return _framed(name, ", ".join(value(name, cell) for cell in cells))
+        return any_of((said(name, cell) for cell in cells), "and")
+    return _framed(name, any_of((value(name, cell) for cell in cells), "and"))
 
 
 def between(name: str, low: Any, high: Any) -> str:

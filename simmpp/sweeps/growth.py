@@ -14,9 +14,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from simmpp.config.axes import POINTS, SAME, Choice
+from simmpp.config.config import Config, described
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.provenance import difference
-from simmpp.sweeps.task import canonical, decides
+from simmpp.sweeps.task import canonical, constants_of, decides
 from simmpp.workload.picture import Picture
 
 GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
@@ -33,20 +34,32 @@ Identity = Mapping[str, Any]
 def meanings(
     policies: Iterable[PolicyParameters],
     rays: Iterable[tuple[str, Picture, str]],
+    configs: Iterable[Config],
     points: Iterable[Choice],
 ) -> dict[str, list[Any]]:
-    """What the names of policies, of scenes (with picture and digest) and of points stand for."""
+    """What names stand for: of policies, of scenes (with picture and digest), of points.
+
+    Likewise what the settings of a machine give, which depends on its preset or file, too.
+    """
     named = [(f"policy {policy.title}", decides(canonical(policy))) for policy in policies]
     named += [(f"point {p.columns[POINTS[:-1]]}", dict(p.assignments)) for p in points]
+    named += [(_machine(config), constants_of(config)) for config in configs]
     names: dict[str, list[Any]] = {}
     for name, meaning in named:
         of_name = names.setdefault(name, [])
         as_read = json.loads(json.dumps(meaning, default=str))
         of_name += [as_read] if as_read not in of_name else []
     for scene, picture, digest in rays:
-        short = hashlib.sha256(repr(picture).encode()).hexdigest()[:8]
-        names.setdefault(f"rays of {scene} (picture {short})", []).append(digest)
+        names.setdefault(f"rays of {scene} (picture {_short(picture)})", []).append(digest)
     return names
+
+
+def _machine(config: Config) -> str:
+    return f"machine of {config.processors} PEs (settings {_short(described(config)['machine'])})"
+
+
+def _short(said: object) -> str:
+    return hashlib.sha256(repr(said).encode()).hexdigest()[:8]
 
 
 def conflict(there: Identity, now: Identity) -> str:

@@ -77,11 +77,12 @@ class Plan:
         config = recorded(self.config).items()
         policies = dict.fromkeys(planned.point.policy for planned in self.points)
         rays = dict.fromkeys((p.scene, p.point.config.picture, p.task.digest) for p in self.points)
+        configs = {id(p.point.comparison): p.point.config for p in self.points}.values()
         return {
             "versions": result_versions(),
             "config": {key: said for key, said in config if key not in (*GROWS, READING)},
             SWEPT: sorted(_swept_everywhere(self.config)),
-            NAMES: meanings(policies, rays, self.config.axes.get(POINTS, ())),
+            NAMES: meanings(policies, rays, configs, self.config.axes.get(POINTS, ())),
         }
 
     @property

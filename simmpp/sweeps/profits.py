@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
-from simmpp.policy.parameters import REFERENCE
+from simmpp.policy.parameters import CEILING, REFERENCE
 from simmpp.run.profit import ratio
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.intervals import interval
@@ -111,7 +111,7 @@ def _is_drawn(both: Sequence[tuple[Row, Row]]) -> bool:
 
 
 def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, float] | None:
-    """The policy with the highest time profit, and its geometric mean.
+    """The dataflow with the highest time profit, and its geometric mean: the reference's is 1.
 
     Policies are compared over the points and seeds that all of them have finished; None as long as
     there are none.
@@ -119,7 +119,7 @@ def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, 
     done = (row for row in rows if not row["error"])
     places = by_place(done, (*PLACE, *further)).values()
     titles = dict.fromkeys(title for policies in places for title in policies)
-    logarithms: dict[str, list[float]] = {title: [] for title in titles if title != REFERENCE}
+    logarithms: dict[str, list[float]] = {title: [] for title in titles if title != CEILING}
     for policies in places:
         if len(policies) < len(titles) or REFERENCE not in titles:
             continue
@@ -128,7 +128,7 @@ def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, 
             if all(times_ps.values()):
                 for title, values in logarithms.items():
                     values.append(math.log(times_ps[REFERENCE] / times_ps[title]))
-    if not any(logarithms.values()):
+    if not any(logarithms.values()) or len(titles) == 1:
         return None
     best = max(logarithms, key=lambda title: fmean(logarithms[title]))
     return best, math.exp(fmean(logarithms[best]))

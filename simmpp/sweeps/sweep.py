@@ -59,6 +59,9 @@ class Watcher:
     def simulated(self, outcome: Outcome) -> None:
         """One more task is finished."""
 
+    def drawing(self, done: int, total: int) -> None:
+        """Figures drawn of the rows, and how many there will be."""
+
     def notice(self, text: str) -> None:
         """Something that the user should know."""
 

@@ -46,11 +46,11 @@ def task_of(point: GridPoint, digest: str) -> Task:
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
-    is_drawn = draws(memory, rules) or reads(policy.rules, "random")
+    is_random = reads(policy.rules, "random") or policy.load_info == "two"
+    is_drawn = draws(memory, rules) or is_random
     is_drawn = is_drawn and METHODS[settings.method].is_placed
     seed = point.seed if is_drawn else 0
-    constants = asdict(replace(config.machine_for(config.processors), sources={}))
-    machine = {name: value for name, value in constants.items() if name not in ("name", "sources")}
+    machine = constants_of(config)
     # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     place = _hash(digest, machine, held, asdict(rules), seed)
@@ -64,6 +64,12 @@ def task_of(point: GridPoint, digest: str) -> Task:
     )
 
 
+def constants_of(config: Config) -> dict[str, Any]:
+    """All of a point's machine that decides a simulation."""
+    constants = asdict(replace(config.machine_for(config.processors), sources={}))
+    return {name: value for name, value in constants.items() if name not in ("name", "sources")}
+
+
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
     rules, defaults = policy.rules, PolicyParameters()
@@ -71,7 +77,7 @@ def canonical(policy: PolicyParameters) -> PolicyParameters:
         return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))
-    ignored += [] if knows_loads(rules) else ["load_info"]
+    ignored += [] if knows_loads(rules) else ["load_info", "refresh_ps", "sample_ps"]
     ignored += [] if rules.asks else ["merge_requests"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -95,6 +96,21 @@ def test_clicking_a_point_of_a_curve_shows_its_rows(
     assert unquote(page.url).endswith("#point=mountain:4|64|0.1|concurrent")
 
 
+def test_what_is_said_of_a_point_has_units(opened: Any, report: Path) -> None:
+    found = opened(report)
+    found.draw_all()
+    said = {
+        figure: found.page.locator(f"{figure} .chart").first.evaluate(
+            "chart => chart.data.find(({hovertext}) => hovertext).hovertext[0]"
+        )
+        for figure in ("#makespan", "#peak-bytes", "#accounts-by-policy", "#point")
+    }
+    assert re.search(r"at 5 % of the scene: [\d.]+( \(.*\))? (s|ms|us)$", said["#makespan"])
+    assert re.search(r": [\d.]+( \(.*\))? k?B$", said["#peak-bytes"])
+    assert re.search(r"at 5 % of the scene: [\d.]+ %$", said["#accounts-by-policy"])
+    assert said["#point"].endswith(" %")
+
+
 def test_a_point_in_depth_shows_the_accounts_of_the_rows(
     opened: Any, report: Path, rows: list[Row]
 ) -> None:
@@ -176,9 +192,10 @@ def test_everything_is_on_paper(opened: Any, report: Path, tmp_path: Path) -> No
     found = opened(report, theme="dark")
     found.page.pdf(path=tmp_path / "report.pdf")
     found.page.emulate_media(media="print")
-    assert (
-        found.page.locator(".chart .main-svg").count() >= 3 * found.page.locator(".chart").count()
-    )
+    count, folded = found.page.locator(".chart").count(), "details:not([open]) .chart"
+    shown = count - found.page.locator(folded).count()  # what is folded stays so on paper
+    assert 0 < shown < count
+    assert found.page.locator(".chart .main-svg").count() >= 3 * shown
     assert not found.page.locator("nav").is_visible()
 
 

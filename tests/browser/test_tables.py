@@ -30,10 +30,10 @@ def column(page: Any, name: str) -> list[str]:
     )
 
 
-def downloaded(page: Any, label: str) -> tuple[str, list[list[str]]]:
+def downloaded(page: Any, name: str) -> tuple[str, list[list[str]]]:
     """A file's name and rows."""
     with page.expect_download() as download:
-        page.locator("#rows .files button", has_text=label).click()
+        page.get_by_role("button", name=name).click()
     text = Path(download.value.path()).read_text(encoding="utf-8-sig")
     return download.value.suggested_filename, list(csv.reader(text.splitlines()))
 
@@ -82,7 +82,7 @@ def test_what_is_shown_becomes_a_file(opened: Any, report: Path, rows: list[Row]
     page = opened(report).page
     page.locator("#rows input").fill("hacked 64 mountain:4")
     page.locator(f"{TABLE} th button", has_text="x").first.click()
-    name, (header, *points) = downloaded(page, "CSV of points")
+    name, (header, *points) = downloaded(page, "CSV of points: All points")
     assert name.endswith("all-points-of-points.csv")
     known = points_of(rows, ())
     found = [dict(zip(header, each, strict=True)) for each in points]
@@ -94,7 +94,7 @@ def test_what_is_shown_becomes_a_file(opened: Any, report: Path, rows: list[Row]
             p for p in known.profits if p.items() >= (keys | {"policy": HOSTILE}).items()
         )
         assert float(each["time_profit_low"]) == round(expected["time_profit_low"], 9)
-    _, (header, *runs) = downloaded(page, "seed by seed")
+    _, (header, *runs) = downloaded(page, "CSV of their rows, seed by seed: All points")
     assert len(runs) == 3 * len(points)
     assert int(dict(zip(header, runs[1], strict=True))["rays"]) == 2**60 + 1
 
@@ -137,3 +137,12 @@ def test_a_sentence_leads_to_the_rows_that_say_so(opened: Any, report: Path) -> 
     assert set(column(page, "policy")) == {"ray dataflow"}
     assert all(gain[:4] in sentence.inner_text() for gain in gains)
     assert page.locator("#only").inner_text().startswith("Only those of “Ray dataflow: time profit")
+
+
+def test_the_rows_of_a_point_are_a_file_too(opened: Any, report: Path) -> None:
+    page = opened(report).page
+    page.locator("#place").select_option(index=1)
+    _, table = downloaded(page, "CSV: Rows of the chosen point")
+    cells = {first: others for first, *others in table}
+    assert cells["seed"] == ["0", "1", "2"]
+    assert cells["rays"] == [str(2**60 + seed) for seed in range(3)]

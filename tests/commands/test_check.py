@@ -345,7 +345,7 @@ def test_what_the_repository_checks_is_what_it_has() -> None:
 def other_default(monkeypatch: pytest.MonkeyPatch) -> tuple[str, str]:
     """Make the other reading of the package the default; its name, and that of the default."""
     (other,) = {"plain", "mixed"} - {DEFAULT_READING}
-    monkeypatch.setattr("simmpp.config.config.DEFAULT_READING", other)
+    monkeypatch.setattr("simmpp.config.beside.DEFAULT_READING", other)
     return other, DEFAULT_READING
 
 
@@ -374,7 +374,7 @@ def test_a_baseline_that_names_no_reading_is_of_plain(monkeypatch: pytest.Monkey
     del record["config"]["reading"], record["config"]["policy"][0]["packing"]
     Path("b/run.json").write_text(json.dumps(record))
     assert check().exit_code == 0
-    monkeypatch.setattr("simmpp.config.config.DEFAULT_READING", "mixed")
+    monkeypatch.setattr("simmpp.config.beside.DEFAULT_READING", "mixed")
     Path("c.yaml").write_text(CONFIG)
     assert "the defaults changed: the baseline is of reading plain" in check().stdout
 

@@ -46,10 +46,15 @@ def test_commands_and_options() -> None:
 def test_every_option_of_every_command(name: str) -> None:
     real = main.get_command(click.Context(main), name)
     assert real is not None
-    light = completion.command(name, "")
+    light = completion.command(name)
     assert [(p.opts, p.nargs, p.multiple) for p in light.params] == [
         (p.opts, p.nargs, p.multiple) for p in real.params
     ]
+
+
+def test_commands_in_a_command() -> None:
+    assert {"new", "check", "list"} <= set(completed("policy", ""))
+    assert completed("policy", "ch") == ["check"]
 
 
 def test_keys_and_their_values() -> None:
@@ -74,7 +79,7 @@ def test_names() -> None:
     assert completed("run", "--policy", "") == list(POLICIES)
     assert completed("run", "--policy", "ray,c") == ["ray,concurrent"]
     assert completed("run", "--engine", "=") == ["compiled", "simpy"]
-    assert completed("machine", "t") == ["t3d", "t3e", "tpu-v4"]
+    assert completed("machine", "t") == ["t3d", "t3e", "t3e-shmem", "tpu-v4"]
     assert completed("reading", "") == ["mixed", "plain"]
     assert completed("reproduce", "--reading", "p") == ["plain"]
     assert completed("keys", "see") == ["seeds"]

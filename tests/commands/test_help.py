@@ -52,7 +52,7 @@ def test_help_fits_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_commands_are_in_the_order_of_work() -> None:
     assert main.list_commands(CONTEXT) == list(COMMANDS)
-    assert list(COMMANDS)[:3] == ["run", "sweep", "report"]
+    assert list(COMMANDS)[:4] == ["init", "run", "sweep", "report"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -72,6 +72,18 @@ def test_one_s_own_reading_can_be_looked_at() -> None:
     assert refused("reading", "shirt.yaml").startswith("value 'shirt.yaml': expected mixed or pl")
 
 
+def test_values_are_printed_as_yaml_has_them() -> None:
+    Path("own.yaml").write_text(
+        "description: own\nbased_on: plain\n"
+        'placement: {pixels: {value: {cells: 8}, source: "ours"}}\n'
+        'policy: {object: {merge_requests: {value: false, source: "ours"}}}\n'
+    )
+    lines = [line.split("  ") for line in simmpp("reading", "own.yaml").stdout.splitlines()]
+    values = {cells[0]: next(filter(None, cells[1:])).strip() for cells in lines if cells[1:]}
+    assert values["placement.pixels"] == "{cells: 8}"
+    assert values["policy.object.merge_requests"] == "false"
+
+
 def test_run_says_what_the_reading_set_and_what_it_did_not() -> None:
     done = simmpp("run", "c.yaml", "--out", "r")
     assert done.exit_code == 0

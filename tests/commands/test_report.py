@@ -12,6 +12,7 @@ from rich.progress import Progress, TextColumn
 from sweep_rows import failed, row, sweep, written
 
 from simmpp.cli import main
+from simmpp.commands.parts.progress import BarWatcher
 
 
 def run(*arguments: object) -> tuple[int, str]:
@@ -63,6 +64,30 @@ def test_drawing_has_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr("simmpp.commands.report.progress_bars", lambda: bars)
     run("report", written(tmp_path, [row(), row("ray")]), "--figures", "time-profit")
     assert "drawing 1 of 1" in screen.getvalue()
+
+
+def test_reading_and_writing_have_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = StringIO()
+
+    def bars() -> Progress:
+        return Progress(
+            TextColumn("{task.description}"), console=Console(file=screen, force_terminal=True)
+        )
+
+    monkeypatch.setattr("simmpp.commands.parts.terminal.progress_bars", bars)
+    run("report", written(tmp_path, [row(), row("ray")]))
+    assert "reading rows" in screen.getvalue()
+    assert "writing the page" in screen.getvalue()
+
+
+def test_studies_draw_with_a_bar_too() -> None:
+    screen = StringIO()
+    column = TextColumn("{task.description} {task.completed} of {task.total} {task.fields[more]}")
+    with Progress(column, console=Console(file=screen, force_terminal=True)) as bars:
+        watcher = BarWatcher(bars)
+        watcher.drawing(0, 7)
+        watcher.drawing(3, 7)
+    assert "drawing 3 of 7 figures" in screen.getvalue()
 
 
 def test_live_ends_at_once_where_no_sweep_works(tmp_path: Path) -> None:

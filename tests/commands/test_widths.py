@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -112,3 +113,27 @@ def simmpp_nff() -> str:
     """A scene's file."""
     simmpp("scene", "tetra:2", "--nff", "t.nff")
     return Path("t.nff").read_text()
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        ("run c.yaml --picture p.png", ["drawing the picture"]),
+        ("run c.yaml --verify", [f"verifying {p}" for p in ("object", "ray", "concurrent")]),
+        ("model c.yaml", ["evaluating the model"]),
+        ("scene tetra:2", ["reading tetra:2"]),
+        ("workload c.yaml --export w.npz", ["writing w.npz"]),
+    ],
+)
+def test_what_takes_seconds_says_that_it_is_at_work(
+    call: str, told: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[str] = []
+
+    class Bars:
+        def add_task(self, what: str, total: None) -> None:
+            begun.append(what)
+
+    monkeypatch.setattr(terminal, "progress_bars", lambda: nullcontext(Bars()))
+    assert simmpp(*shlex.split(call)).exit_code == 0
+    assert [what for what in begun if what in told] == told

@@ -164,6 +164,19 @@ def test_a_name_that_means_something_else_is_refused(tmp_path: Path) -> None:
             run_sweep({**named, **other}, out=tmp_path)
 
 
+def test_settings_that_give_another_machine_are_refused(tmp_path: Path) -> None:
+    """The file of a reading says what tests cost where the configuration does not."""
+    own = tmp_path / "own.yaml"
+    cost = "description: d\nmachine: {{t3e: {{test: {{value: {} us, source: ESTIMATE}}}}}}\n"
+    config = {**SMALL, "reading": str(own)}
+    own.write_text(cost.format(3))
+    tables(config, tmp_path / "o")
+    tables({**config, "sweep": {"processors": [8]}}, tmp_path / "o")
+    own.write_text(cost.format(4))
+    with pytest.raises(ConfigError, match=r"machine of 2 PEs .*\.test\.\w+ is 3000000 there, 4"):
+        run_sweep(config, out=tmp_path / "o")
+
+
 def test_a_policy_of_ones_own_that_became_another_is_refused(tmp_path: Path) -> None:
     own = tmp_path / "own.py"
     rule = "from simmpp.policy import Policy, hook\n@hook\ndef send(v):\n    return v.load > {}\n"

@@ -125,7 +125,7 @@ MTL = (
 WORDS["mtl"] = "newmtl Kd Ks Ns d Tr Ni illum Tf map_Kd spectral xyz -halo # \\ a é"
 
 
-@examples(1000)
+@examples(300)
 @given(st.integers(0, 2**32))
 def test_a_damaged_library_is_read(seed: int) -> None:
     random = Random(seed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from oracles.state import PE, Part
-from oracles.view import Views, numbers
+from oracles.view import Views, numbers, random_draw
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.policy.policy import Hook
 from simmpp.policy.reads import knows_loads, names_in
@@ -62,11 +62,25 @@ class Dispatch(Views):
             count = (known | own)[count]
         return waiting > 0 and (nothing_else or waiting >= count)
 
-    def candidates(self, pe: PE) -> list[int]:
+    def candidates(self, pe: PE, nothing_else: bool) -> list[int]:
         """PEs that send is asked about, in this order."""
+        asked = [
+            other
+            for other in self.others(pe)
+            if self.is_asked(self.n_sendable(pe, other), self.rules.batch, nothing_else)
+        ]
         if self.rules.candidates == "owner":
-            return self.others(pe)
-        return sorted(self.others(pe), key=lambda other: self.known_load(pe.clock, pe, other)[0])
+            return asked
+        if self.policy.load_info == "two" and len(asked) > 2:
+            one = asked[random_draw(self.seed, pe) % len(asked)]
+            rest = [other for other in asked if other != one]
+            two = (one, rest[random_draw(self.seed, pe) % len(rest)])
+            asked = [other for other in asked if other in two]
+        return sorted(asked, key=lambda other: self.known_load(pe.clock, pe, other)[0])
+
+    def n_sendable(self, pe: PE, other: int) -> int:
+        """How many rays may be sent to a PE."""
+        return sum(map(len, self.sendable(pe, other)))
 
     def may_go(self, obj: int, other: int) -> bool:
         """May rays that need an object go there?"""
@@ -84,7 +98,7 @@ class Dispatch(Views):
     def rays_to_send(self, pe: PE, nothing_else: bool, send: Hook) -> Iterator[tuple[int, Part]]:
         """A batch to each PE that the hook lets any go to: of whole objects, until enough."""
         draws = "random" in names_in(send)
-        for owner in self.candidates(pe):
+        for owner in self.candidates(pe, nothing_else):
             groups, rays = self.sendable(pe, owner), list[int]()
             waiting = sum(map(len, groups))
             if not self.is_asked(waiting, self.rules.batch, nothing_else):

@@ -104,6 +104,8 @@ class Views(World):
         """What a PE knows of another's load, and for how long it has."""
         if self.policy.load_info == "none":
             return -1, clock
-        if self.policy.load_info == "exact":
+        if self.policy.load_info in ("exact", "two") or self.policy.sample_ps == 0:
             return self.pes[other].ended_load, 0
+        if self.policy.load_info == "sampled":
+            return self.sampled[other], clock - self.sampled_at
         return pe.known_load[other], clock - pe.heard[other]

@@ -50,6 +50,8 @@ class World:
         self.positions = [0] * self.workload.n_rays
         self.ledger.ray_hops = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
+        self.sampled = [pe.load for pe in self.pes]
+        self.sampled_at = 0
         for pe in self.pes:
             self.sample_rays(pe)
             self.sample_bytes(pe)
@@ -69,6 +71,13 @@ class World:
         """Let a PE begin or dispatch at a time."""
         heapq.heappush(self.queue, ((time, 1, pe.number, pe.instants, 0), what, pe))
         pe.instants += 1
+
+    def sample_loads(self, time: int) -> None:
+        """If a multiple of the period has passed since all loads were sampled, sample them."""
+        period = self.policy.sample_ps
+        if period and time // period > self.sampled_at // period:
+            self.sampled = [pe.ended_load for pe in self.pes]
+            self.sampled_at = time
 
     def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
         """Charge a PE; returns the time when it has paid."""
@@ -124,6 +133,9 @@ class World:
 
     def held_bytes(self, pe: PE) -> int:
         """Bytes of the objects that a PE holds."""
-        pinned = {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
-        held = pe.resident | pinned | set(pe.transient)
+        held = pe.resident | self.pinned(pe) | set(pe.transient)
         return sum(self.object_bytes[o] for o in held)
+
+    def pinned(self, pe: PE) -> set[int]:
+        """Fetched objects that are there for a test that is to be made."""
+        return {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}

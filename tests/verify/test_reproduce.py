@@ -105,6 +105,12 @@ def test_figures_show_the_rows(done: Reproduction, out: Path) -> None:
 
 
 class Idle(Watcher):
+    def __init__(self) -> None:
+        self.drawn: list[tuple[int, int]] = []
+
+    def drawing(self, done: int, total: int) -> None:
+        self.drawn.append((done, total))
+
     def simulated(self, outcome: Outcome) -> None:
         raise AssertionError(outcome)
 
@@ -113,7 +119,10 @@ def test_again_nothing_is_simulated_and_all_bytes_are_the_same(
     done: Reproduction, out: Path
 ) -> None:
     before = {path.name: path.read_bytes() for path in out.iterdir()}
-    assert reproduce(out, seeds=1, resolution=16, watcher=Idle()) == [done]
+    idle = Idle()
+    assert reproduce(out, seeds=1, resolution=16, watcher=idle) == [done]
+    whole = len(FIGURES) + 1
+    assert idle.drawn == [(figures, whole) for figures in range(whole + 1)]
     assert before == {path.name: path.read_bytes() for path in out.iterdir()}
 
 

@@ -18,10 +18,18 @@ Items = list[CompletionItem[str]]
 Complete = Callable[[click.Context, click.Parameter, str], Items]
 
 
-def command(name: str, text: str) -> click.Command:
+def command(name: str) -> click.Command:
     """What completes the command so called, without importing it."""
-    parameters = [_parameter(said) for said in words()["commands"][name]]
-    return click.Command(name, params=parameters, help=text)
+    return _command(name, words()["commands"][name])
+
+
+def _command(name: str, said: dict[str, Any]) -> click.Command:
+    about: dict[str, Any] = {
+        "params": [_parameter(each) for each in said["parameters"]],
+        "help": said["help"],
+    }
+    inner = [_command(other, each) for other, each in said["commands"].items()]
+    return click.Group(name, commands=inner, **about) if inner else click.Command(name, **about)
 
 
 def _parameter(said: dict[str, Any]) -> click.Parameter:

@@ -94,6 +94,7 @@ class BarWatcher(CountingWatcher):
     def __init__(self, bars: Progress) -> None:
         self._bars = bars
         self._tracing: dict[str, TaskID] = {}
+        self._drawing: TaskID | None = None
 
     def planned(self, plan: Plan, finished: Mapping[str, Outcome]) -> None:
         """Draw the bar."""
@@ -108,6 +109,12 @@ class BarWatcher(CountingWatcher):
         if scene not in self._tracing:
             self._tracing[scene] = self._bars.add_task(f"tracing {scene}", more="rays")
         self._bars.update(self._tracing[scene], completed=done, total=total)
+
+    def drawing(self, done: int, total: int) -> None:
+        """Draw a bar for the figures."""
+        if self._drawing is None:
+            self._drawing = self._bars.add_task("drawing", more="figures")
+        self._bars.update(self._drawing, completed=done, total=total)
 
     def simulated(self, outcome: Outcome) -> None:
         """Move the bar."""

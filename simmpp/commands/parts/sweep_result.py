@@ -17,8 +17,9 @@ from simmpp.report.page.folder import read_folder
 from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
-from simmpp.sweeps.winners.answer import Sentence, answer
+from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.points import points_of
+from simmpp.sweeps.winners.sentence import Sentence
 
 PROFITS_SHOWN = 40
 
@@ -90,7 +91,7 @@ def _table(result: SweepResult) -> Fitting:
         }
         for row in _profits(result).head(PROFITS_SHOWN).to_dict("records")
     ]
-    return table(rows, n_keys=len(names))
+    return table(rows, n_keys=len(names), is_sweep=True)
 
 
 def _profits(result: SweepResult) -> DataFrame:

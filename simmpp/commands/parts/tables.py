@@ -59,6 +59,8 @@ class Fitting:
     columns: tuple[Column, ...]
     n_keys: int
     """The first columns, which name a row."""
+    is_sweep: bool = False
+    """What all rows have in common goes above the table in any case."""
 
     @property
     def n_rows(self) -> int:
@@ -69,7 +71,7 @@ class Fitting:
         """Called by rich."""
         keys, others = self.columns[: self.n_keys], self.columns[self.n_keys :]
         width = options.max_width
-        if self.n_rows > 1 and not _fit((*keys, *others), width):
+        if self.n_rows > 1 and (self.is_sweep or not _fit((*keys, *others), width)):
             constant = [column for column in self.columns if column.is_constant]
             if said := [column for column in constant if column.cells[0]]:
                 yield _named(said, [column.cells[0] for column in said])
@@ -78,7 +80,9 @@ class Fitting:
             yield from _arranged(keys, others, width)
 
 
-def table(rows: Sequence[Mapping[str, object]], n_keys: int | None = None) -> Fitting:
+def table(
+    rows: Sequence[Mapping[str, object]], n_keys: int | None = None, *, is_sweep: bool = False
+) -> Fitting:
     """Rows with the same keys as a table; numbers to the right.
 
     The first columns of texts name the rows, the first one at least, unless it is said how many do.
@@ -92,7 +96,7 @@ def table(rows: Sequence[Mapping[str, object]], n_keys: int | None = None) -> Fi
         cells = tuple(_cell(row[name]) for row in rows)
         written = number >= n_keys and all(map(_NUMBER.match, cells))
         columns.append(Column(name, cells, written or not isinstance(first[name], str)))
-    return Fitting(tuple(columns), n_keys)
+    return Fitting(tuple(columns), n_keys, is_sweep)
 
 
 def texts(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int = 2) -> Fitting:

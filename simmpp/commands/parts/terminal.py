@@ -8,13 +8,16 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from simmpp.commands.parts.tables import Fitting
+
+if TYPE_CHECKING:
+    from simmpp.config.config import Config
 
 WIDTH_OF_A_PIPE = 160
 """Columns where no terminal gives a width."""
@@ -73,6 +76,14 @@ def notice(text: str) -> None:
     click.echo(f"simmpp: {text}", err=True)
 
 
+def warn(config: Config, *, is_swept: bool) -> None:
+    """Say what a configuration has that does not do what it seems to."""
+    from simmpp.config.misleading import misleading
+
+    for line in misleading(config, is_swept=is_swept):
+        notice(f"warning: {line}")
+
+
 def wrote(*paths: Path) -> None:
     """Say which files there are now."""
     if paths:
@@ -122,3 +133,11 @@ def progress_bars() -> Iterator[Progress]:
     )
     with bars:
         yield bars
+
+
+@contextmanager
+def at_work(what: str) -> Iterator[None]:
+    """A bar that moves, for what takes seconds but can't say how far it is."""
+    with progress_bars() as bars:
+        bars.add_task(what, total=None)
+        yield

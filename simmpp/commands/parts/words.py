@@ -11,7 +11,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import click
@@ -51,7 +53,6 @@ def _stamp() -> str:
 
 def collected() -> dict[str, Any]:
     """The words, from where each is declared."""
-    from simmpp.cli import COMMANDS, main
     from simmpp.config.keys import keys
     from simmpp.config.reading import reading_names
     from simmpp.config.schema import json_schema
@@ -59,7 +60,8 @@ def collected() -> dict[str, Any]:
     from simmpp.policy.parameters import POLICIES as RULES
     from simmpp.scene.spd.generators import GENERATORS
 
-    context, schema = click.Context(main), json_schema()
+    schema, package = json_schema(), import_module("simmpp.commands")
+    commands = [module.name for module in iter_modules(package.__path__) if not module.ispkg]
     scenes = [f"{scene.name}:{scene.default_size}" for scene in GENERATORS.values()]
     names = {
         POLICIES: list(RULES),
@@ -73,12 +75,26 @@ def collected() -> dict[str, Any]:
     return {
         **names,
         "keys": {name: values[name] for name in values if name not in holders},
-        "commands": {name: _parameters(main.get_command(context, name)) for name in COMMANDS},
+        "commands": {name: _described(_command(name)) for name in commands},
     }
 
 
-def _parameters(command: click.Command | None) -> list[dict[str, Any]]:
-    """What must be known of the options and arguments of a command to complete them."""
+def _command(name: str) -> click.Command:
+    command: click.Command = getattr(import_module(f"simmpp.commands.{name}"), f"{name}_command")
+    return command
+
+
+def _described(command: click.Command) -> dict[str, Any]:
+    """What must be known of a command, and of those in it, to complete its words."""
+    inner = command.commands if isinstance(command, click.Group) else {}
+    return {
+        "help": command.get_short_help_str(),
+        "parameters": _parameters(command),
+        "commands": {name: _described(one) for name, one in inner.items()},
+    }
+
+
+def _parameters(command: click.Command) -> list[dict[str, Any]]:
     return [
         {
             "names": [*param.opts, *param.secondary_opts],
@@ -89,7 +105,7 @@ def _parameters(command: click.Command | None) -> list[dict[str, Any]]:
             "is_path": isinstance(param.type, click.Path),
             "choices": list(getattr(param.type, "choices", ())),
         }
-        for param in (command.params if command else ())
+        for param in command.params
     ]
 
 

@@ -20,6 +20,7 @@ PE = np.dtype(
         ("n_ready", "i8"),
         ("load", "i8"),  # rays held: ready + waiting
         ("settled_load", "i8"),  # load at the end of the last ended activity
+        ("sampled_load", "i8"),  # that load when all were last sampled
         ("waits", "i8"),  # rays that ever began to wait: orders waiting rays by age
         ("messages_sent", "i8"),
         ("busy_until_ps", "i8"),
@@ -29,6 +30,7 @@ PE = np.dtype(
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
         ("peak_object_bytes", "i8"),  # of held_bytes
+        ("transient_bytes", "i8"),  # of fetched objects that are kept
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
         ("draws", "i8"),  # random numbers that its policy was given
@@ -47,6 +49,7 @@ RAY = np.dtype(
 MISS = np.dtype(
     [
         ("key", "i8"),  # PE * N + object
+        ("rank", "i8"),  # in transient memory: the least leaves first
         ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
         ("chain", "i4"),
         ("first", "i4"),  # waiting rays, oldest first; NONE: none
@@ -169,8 +172,14 @@ SLICE = np.dtype(
 )
 """What is counted of a PE when it works again, or the run is over: it may end before the work."""
 
-PIGGYBACK, EXACT, NO_INFO = range(3)
-LOAD_INFO = {"piggyback": PIGGYBACK, "exact": EXACT, "none": NO_INFO}
+PIGGYBACK, EXACT, NO_INFO, SAMPLED, TWO = range(5)
+LOAD_INFO = {
+    "piggyback": PIGGYBACK,
+    "exact": EXACT,
+    "none": NO_INFO,
+    "sampled": SAMPLED,
+    "two": TWO,
+}
 SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
 PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
 BEGIN, DISPATCH = range(2)

@@ -22,8 +22,9 @@ herd rays but not bounce them.
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
+from simmpp.common.philox import philox
 from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key
-from simmpp.engine.arrays.records import NONE, SINGLY, Run
+from simmpp.engine.arrays.records import NONE, SINGLY, TWO, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,
@@ -77,6 +78,8 @@ def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
     if view.nothing_else:
         n = _collect_peers(s, me, unsent(s), 2 * me, n)
     clock_ps = now_ps
+    if s.load_info == TWO and s.to_holders and n > 2:
+        n = _keep_two(s, pe, me, n)
     if s.to_holders:
         _put_least_loaded_first(s, n)
     for i in range(n):
@@ -94,6 +97,20 @@ def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
             other = peer_rows(s)[peer_row].key % s.processors
             clock_ps = send_rays(s, me, other, head, tail, n_rays, clock_ps)
     return clock_ps
+
+
+@kernel
+def _keep_two(s: Run, pe: Row, me: int, n: int) -> int:
+    """Of n peers in ``sort_items`` two at random, in their order; returns 2."""
+    one = philox(s.random_key, me, pe.draws + 1) % n
+    other = philox(s.random_key, me, pe.draws + 2) % (n - 1)
+    pe.draws += 2
+    if other >= one:
+        other += 1
+    one, other = min(one, other), max(one, other)
+    for at, chosen in ((0, one), (1, other)):
+        sort_keys(s)[at], sort_items(s)[at] = sort_keys(s)[chosen], sort_items(s)[chosen]
+    return 2
 
 
 @kernel
@@ -158,7 +175,7 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
     clock_ps = now_ps
     for i in range(n):
         miss_row = sort_items(s)[i]
-        show_object(s, view, me, miss_row, clock_ps)
+        show_object(s, view, me, miss_row, clock_ps, s.ask_reads)
         answer = consult(s.ask, view)
         if answer > 0:
             miss = miss_rows(s)[miss_row]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import add, append, find
-from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, Run
+from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, SAMPLED, TWO, Run
 from simmpp.engine.arrays.views import exchanged, peer_rows, peers, pes
 
 
@@ -25,8 +25,10 @@ def known_load(s: Run, peer_row: int) -> int:
     peer = peer_rows(s)[peer_row]
     if s.load_info == NO_INFO:
         return NONE
-    if s.load_info == EXACT:
+    if s.load_info == EXACT or s.load_info == TWO:
         return pes(s)[peer.key % s.processors].settled_load
+    if s.load_info == SAMPLED:
+        return pes(s)[peer.key % s.processors].sampled_load
     return s.initial_load if peer.load == NONE else peer.load
 
 
@@ -34,9 +36,20 @@ def known_load(s: Run, peer_row: int) -> int:
 def age_ps(s: Run, peer_row: int, now_ps: int) -> int:
     """How old that is; since the start if never heard."""
     peer = peer_rows(s)[peer_row]
-    if s.load_info == EXACT:
+    if s.load_info == EXACT or s.load_info == TWO:
         return 0
+    if s.load_info == SAMPLED:
+        return now_ps - s.sampled_ps
     return now_ps if s.load_info == NO_INFO or peer.load == NONE else now_ps - peer.heard_ps
+
+
+@kernel
+def sample_loads(s: Run, now_ps: int) -> None:
+    """All PEs are shown the loads of now, until the next multiple of the period has passed."""
+    for other in range(s.processors):
+        pes(s)[other].sampled_load = pes(s)[other].settled_load
+    s.sampled_ps = now_ps
+    s.next_sample_ps = (now_ps // s.sample_ps + 1) * s.sample_ps
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, UNPACK, Row, Run
+from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, SAMPLED, UNPACK, Row, Run
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
@@ -27,7 +27,7 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.peers import note_exchange, peer_of
+from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
@@ -48,6 +48,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     and the number of messages in the outbox.
     """
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
+    if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
+        sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
     if phase == DISPATCH:
@@ -174,7 +176,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             if tests == s.quantum:
                 break
             clock_ps += test_ps(s)[obj]
-            _test(s, me, ray, obj)
+            _test(s, me, ray, obj, clock_ps)
             tests += 1
         else:
             clock_ps += s.ray_ps
@@ -192,17 +194,17 @@ def compute(s: Run, me: int, now_ps: int) -> int:
 
 
 @kernel
-def _test(s: Run, me: int, ray: int, obj: int) -> None:
-    """One ray-object intersection; what it finds is in the workload."""
+def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
+    """One ray-object intersection, which is over now; what it finds is in the workload."""
     if s.record_tests:
         tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
     s.tests += 1
     r = rays(s)[ray]
     r.tested += 1
-    if r.granted or s.transient > 0:
+    if r.granted or s.keeps:
         miss_row = find(misses(s), me * s.n_objects + obj)
         if miss_row != NONE:  # a resident object has none
             touch(s, me, miss_row)
             if r.granted:
-                unpin(s, me, miss_row, obj)
+                unpin(s, me, miss_row, obj, now_ps)
         r.granted = 0

@@ -75,7 +75,10 @@ def _spreads(points: Points, name: str) -> list[list[Any]]:
 def _place(points: Points, number: int) -> str:
     """What the policies of a place have in common; all there is, if it is the only one."""
     profit = points.profits[number]
-    return words.point(profit, points.axes or ("scene", "processors", "fraction"))
+    text = words.point(profit, points.axes or ("scene", "processors", "fraction"))
+    held = points.at(number, "fraction")
+    more = held != profit["fraction"]  # what they own is more than was asked for
+    return f"{text} (PEs hold {words.value('fraction', held)})" if more else text
 
 
 def _name(points: Points, row: Row) -> str:

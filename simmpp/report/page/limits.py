@@ -16,9 +16,9 @@ from simmpp.report.page.together import FOLDER
 from simmpp.run import words
 from simmpp.run.limits import PARTS, Limits, MessageCosts, limits_of, together
 from simmpp.sweeps.intervals import of_logarithms
-from simmpp.sweeps.winners.answer import Sentence
 from simmpp.sweeps.winners.contest import contests_of
 from simmpp.sweeps.winners.points import ACCOUNTS, Points
+from simmpp.sweeps.winners.sentence import Sentence
 
 NEEDED = (*ACCOUNTS.values(), "messages", "bytes_sent", "rays_sent", "request_messages")
 """Columns that a method may not know."""
@@ -90,11 +90,12 @@ def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
         yield Sentence(f"{flow} is {limits.of[best[0]]}.", tuple(best))
     elif best:
         counts = Counter(limits.of[number].first for number in best)
-        parts = []
+        parts: list[str] = []
         for part, count in counts.most_common():
             of = [limits.of[n].shares[part] * 100 for n in best if limits.of[n].first == part]
-            parts.append(f"{part} in {count} ({words.span(of)} % of the makespan)")
-        text = f"The fastest dataflow is limited most by {', '.join(parts)} of {len(best)} cases."
+            number = f"{count} of {len(best)} cases" if not parts else f"{count}"
+            parts.append(f"by {part} in {number} ({words.span(of)} % of the makespan)")
+        text = f"Besides computing, the fastest dataflow is limited most {', '.join(parts)}."
         yield Sentence(text, tuple(best))
 
 
@@ -112,7 +113,7 @@ def _line(limits: PointLimits, number: int, axes: list[str]) -> Row:
     makespan = of_logarithms([row["makespan_ps"] for row in points.runs[number]]).mean
     of, shares = limits.of[number], limits.shares(number)
     return {
-        **{words.SHORT.get(n, n): words.value(n, points.profits[number][n]) for n in axes},
+        **{words.SHORT.get(n, n): words.value(n, points.at(number, n)) for n in axes},
         "policy": points.flow(number),
         "makespan": format_ps(int(float(f"{makespan:.4g}"))),
         **{part: f"{share * 100:.3g} %" for part, share in shares.items()},

@@ -24,10 +24,12 @@ class Warned(NamedTuple):
     text: str
     call: str = ""
     """The command that mends it."""
+    of: str = ""
+    """The name of the folder, where there are several."""
 
     def __str__(self) -> str:
-        """Both, in one line."""
-        return f"{self.text} {self.call}".rstrip()
+        """All of it, in one line."""
+        return f"{self.of}{': ' if self.of else ''}{self.text} {self.call}".rstrip()
 
 
 def standing_of(folder: Folder) -> Standing:
@@ -45,9 +47,9 @@ def warnings_of(folder: Folder, *, is_followed: bool = False) -> list[Warned]:
 def warnings_of_each(folders: Mapping[str, Folder]) -> list[Warned]:
     """The same of several folders, by their names."""
     return [
-        Warned(f"{name}: {text}", call)
+        warned._replace(of=name)
         for name, folder in folders.items()
-        for text, call in warnings_of(folder)
+        for warned in warnings_of(folder)
     ]
 
 

@@ -59,14 +59,15 @@ def _activity(figure: Figure, motion: Motion) -> None:
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
 
 
-def _mixed(motion: Motion) -> NDArray[np.float64]:
-    """Colours of the three activities by their share of each bin: (nb, bins, 3) float64."""
+def _mixed(motion: Motion) -> NDArray[np.uint8]:
+    """Colours of the three activities by their share of each bin: (nb, bins, 3) uint8."""
     whole_ps = np.maximum(np.diff(motion.times_ps), 1)[None, :, None]
     colours = [
         getattr(motion, name)[:, :, None] / whole_ps * np.array(matplotlib.colors.to_rgb(color))
         for name, color in ACTIVITIES.items()
     ]
-    return np.sum(colours, axis=0, dtype=np.float64).clip(0, 1)
+    mixed = np.sum(colours, axis=0, dtype=np.float64).clip(0, 1)
+    return (255 * mixed).round().astype(np.uint8)
 
 
 def _progress(figure: Figure, motion: Motion) -> None:
@@ -167,7 +168,7 @@ def _memory(figure: Figure, motion: Motion) -> None:
     axes.set(xlabel="PE", ylabel="MB", ylim=(0, 1.25 * max(bottom.max(), 1e-9)))
     axes.set_title(f"{motion.title}: memory of every PE")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.legend(frameon=False, ncols=2, fontsize=8)
+    axes.legend(frameon=False, ncols=2, fontsize=8, loc="upper center")
 
 
 def _pixels(figure: Figure, motion: Motion) -> None:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from simmpp.machine.torus import Torus
@@ -23,6 +24,9 @@ LINK_COLOURS = LinearSegmentedColormap.from_list(
 _MOST_COLUMNS = 8
 _LEAST_HEIGHT = 3.2
 """Inches that the labels beside the scales need, however few PEs there are."""
+_SCALE_PARTS = 6
+"""Divisions of a scale: without a number they depend on its height, which is not yet known when
+its labels are given room."""
 _STUB = 0.45
 """Length of a link that leads out of a layer, or round the ring, in distances of PEs."""
 
@@ -54,7 +58,9 @@ def draw_torus(figure: Figure, motion: Motion) -> None:
         (loads, LOAD_COLOURS, "rays held, mean over time"),
     ):
         scale = matplotlib.cm.ScalarMappable(norm, cmap)
-        figure.colorbar(scale, ax=grid, label=label, aspect=30, pad=0.01)
+        figure.colorbar(
+            scale, ax=grid, label=label, aspect=30, pad=0.01, ticks=MaxNLocator(_SCALE_PARTS)
+        )
     figure.suptitle(f"{motion.title}: links by bytes, PEs by load", fontsize=9)
 
 

@@ -71,10 +71,10 @@ def bench(
         note_call(out, call)
         _time_tracing(full, journal, watcher or Watcher())
         run_plans(plans.values(), journal, workers, watcher)
-        return _written(plans, journal, out)
+        return _written(plans, journal, out, watcher or Watcher())
 
 
-def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
+def _written(plans: Mapping[str, Plan], journal: Journal, out: Path, watcher: Watcher) -> Bench:
     full, outcomes = plans[SIMULATE], journal.outcomes
     runs = [row for plan in plans.values() for row in plan.rows(outcomes)]
     good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if not row["error"]]
@@ -92,6 +92,7 @@ def _written(plans: Mapping[str, Plan], journal: Journal, out: Path) -> Bench:
         from simmpp.plot.matplotlib_panels import draw
 
         seeds = len(full.config.settings.seeds)
+        watcher.drawing(0, 1)
         files += draw(bench_panels(ladder, NAMES, seeds), out / Path(BENCH).stem)
     return Bench(ladder, files, [row["error"] for row in runs if row["error"]])
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import as_file, files
-from itertools import chain
+from itertools import chain, count
 from pathlib import Path
 
 from simmpp.common.errors import ConfigError
@@ -90,8 +90,9 @@ def reproduce(
         with closing(Journal(out, {"versions": result_versions()})) as journal:
             note_call(out, call)
             run_plans(chain(*(of.values() for of in plans.values())), journal, workers, watcher)
+            drawn = _counted(watcher or Watcher(), len(plans) * (len(FIGURES) + 1))
             done = [
-                _report(name, plans[name], journal, own, folders[name])
+                _report(name, plans[name], journal, own, folders[name], drawn)
                 for name, own in overrides.items()
             ]
         for one in done:
@@ -125,8 +126,20 @@ def load_experiment(name: str, overrides: Sequence[str] = ()) -> Config:
         return load_config(path, overrides)
 
 
+def _counted(watcher: Watcher, total: int) -> Callable[[], None]:
+    """What is called after each figure, of all readings."""
+    numbers = count(1)
+    watcher.drawing(0, total)
+    return lambda: watcher.drawing(next(numbers), total)
+
+
 def _report(
-    reading: str, plans: Mapping[str, Plan], journal: Journal, overrides: Sequence[str], out: Path
+    reading: str,
+    plans: Mapping[str, Plan],
+    journal: Journal,
+    overrides: Sequence[str],
+    out: Path,
+    drawn: Callable[[], None],
 ) -> Reproduction:
     """Write configurations, rows, figures and the record of one reading."""
     # Not at the top: pages, which show the same figures, need no matplotlib.
@@ -140,8 +153,10 @@ def _report(
     measured = {name: RowIndex(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
         draw(_of_reading(panels(measured[name]), reading), out / figure)
+        drawn()
     model = load_experiment(MODEL, overrides)
     verdicts = reproduce_figure2(model, workload_of(model), out)
+    drawn()
     verdicts += judge(Evidence(measured["figure3"], measured["figure4"], measured["figure6"]))
     facts = {"set": list(overrides), READING: reading, "versions": all_versions()}
     write_record(facts, out / RECORD)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from simmpp.common.files import Row
 from simmpp.common.units import counted
@@ -23,15 +22,8 @@ from simmpp.sweeps.winners.contest import (
     contests_of,
 )
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
-from simmpp.sweeps.winners.several import cases_of, few, told
-
-
-class Sentence(NamedTuple):
-    """Something that points of a sweep say."""
-
-    text: str
-    points: tuple[int, ...] = ()
-    """Their numbers."""
+from simmpp.sweeps.winners.sentence import Sentence
+from simmpp.sweeps.winners.several import cases_of, few, shortest, told
 
 
 def answer_of(
@@ -50,10 +42,13 @@ def answer(points: Points) -> list[Sentence]:
     contests = contests_of(points)
     if not contests:
         return [Sentence("No point has a result.")]
-    texts = list(told(points, contests)) if len(contests) > 1 else [_one(points, contests[0])]
     if all(contest.certainty == ALONE for contest in contests):
-        texts = [f"Only {_flows(contests)} was run: there is nothing to compare it with"]
-    lines = [Sentence(f"{text}.", tuple(cases_of(contests))) for text in texts]
+        text = f"Only {_flows(contests)} was run: there is nothing to compare it with."
+        lines = [Sentence(text, tuple(cases_of(contests)))]
+    elif len(contests) == 1:
+        lines = [Sentence(f"{_one(points, contests[0])}.", (contests[0].best,))]
+    else:
+        lines = [*told(points, contests), *shortest(points, contests)]
     return [*lines, *_absent(points, contests), *_ceiling(points, contests), *_failed(points)]
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.yamlfile import parse_yaml, read_yaml
+from simmpp.common.yamlfile import parse_yaml, read_yaml, written
 
 
 def test_scalars_follow_yaml_1_2() -> None:
@@ -94,3 +94,18 @@ def test_any_text_is_read_or_refused_in_one_line(text: str) -> None:
         parse_yaml(text)
     except ConfigError as error:
         assert len(str(error).splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ({"cells": 8}, "{cells: 8}"),
+        ({"a": [1, 2.5, True]}, "{a: [1, 2.5, true]}"),
+        (False, "false"),
+        (None, "null"),
+        ("10 us", "10 us"),
+    ],
+)
+def test_values_are_written_as_they_are_read(value: object, text: str) -> None:
+    assert written(value) == text
+    assert parse_yaml(text).data == value

@@ -8,7 +8,8 @@ from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import UNLIMITED, CopyCost, TestCost
 from simmpp.machine.presets import OVERRIDDEN, load_preset, machine, preset_names
 
-NAMES = ["bluegene-l", "t3d", "t3e", "tpu-v4", "xe6-hopper"]
+TORI = ["bluegene-l", "t3d", "t3e", "t3e-shmem", "tpu-v4", "xe6-hopper"]
+NAMES = sorted([*TORI, "cloud", "cpu-cluster", "gpu-cluster", "gpu-node"])
 
 
 def test_the_presets_there_are() -> None:
@@ -29,10 +30,10 @@ def test_every_constant_has_a_source(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_preset_makes_a_machine_and_cites_each_constant(name: str) -> None:
-    made = machine(name, processors=64)
-    assert made.shape == (4, 4, 4)
+    made = machine(name, processors=8)
+    assert made.shape == ((2, 2, 2) if name in TORI else (8, 1, 1))
     assert made.sources.keys() == load_preset(name).constants.flat().keys()
-    assert len(made.sources) == 34
+    assert len(made.sources) >= 34
 
 
 def test_t3e_has_the_constants_that_its_file_says() -> None:
@@ -82,7 +83,7 @@ def test_shapes() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"preset": "t3x"}, "preset: value 't3x': expected one of bluegene-l, t3d"),
+        ({"preset": "t3x"}, "preset: value 't3x': expected one of bluegene-l, cloud"),
         ({"preset": "../t3e"}, "preset: value '../t3e': expected one of"),
         ({"processors": 0}, "processors: value 0: expected an integer from 1 to 65536"),
         ({"shape": (4, 4, 5)}, "shape: value [4, 4, 5]: expected three integers whose product is"),

@@ -22,7 +22,7 @@ from simmpp.placement.residents import resident_count
 from simmpp.workload.workload import Workload
 
 OWNERS = ("bisection", "morton", "round_robin", "random")
-RESIDENTS = ("random", "nearest", "hot")
+RESIDENTS = ("random", "nearest", "hot", "used")
 PIXELS = ("blocks", "rows", "tiles", "interleaved", "random")
 PICTURES = st.tuples(st.integers(1, 12), st.integers(1, 12))
 

@@ -104,13 +104,17 @@ def test_rows_alone_tell_no_kinds_of_waiting() -> None:
         WAITING: 100,
     }
     assert limits_of(row, 2).parts_ps == {COMPUTE: 50, COMMUNICATION: 50, WAITING: 100}
+    alone = limits_of(row | {"messages": 0}, 2)  # nobody waits for a message
+    assert alone.parts_ps[IMBALANCE] == 100
+    both = together([alone, limits_of(row, 2)]).parts_ps
+    assert both == {COMPUTE: 100, COMMUNICATION: 100, IMBALANCE: 100, WAITING: 100}
 
 
 def test_near_the_bound_nothing_but_compute_is_left() -> None:
     of = [numbers(makespan_ps=10, compute_ps=n, waiting_ps=20 - n) for n in (19, 17)]
     near, far = (limits_of(each, 2) for each in of)
-    assert (near.first, far.first) == (COMPUTE, WAITING)
-    assert together([near, far]).parts_ps == {COMPUTE: 36, COMMUNICATION: 0, WAITING: 4}
+    assert (near.first, far.first) == (COMPUTE, IMBALANCE)
+    assert together([near, far]).parts_ps == {COMPUTE: 36, COMMUNICATION: 0, IMBALANCE: 4}
     assert limits_of(numbers(), 2).first == COMPUTE  # nothing at all
 
 

@@ -94,6 +94,8 @@ def test_the_interval_holds_the_mean_19_times_of_20() -> None:
 def test_best_policy_so_far() -> None:
     rows = [row("object", 0, 10, 1), row("ray", 0, 5, 1), row("concurrent", 0, 4, 1)]
     assert best_policy(rows) == ("concurrent", pytest.approx(2.5))
+    assert best_policy([*rows, row("replicated", 0, 1, 0)]) == best_policy(rows)  # no dataflow
+    assert best_policy([rows[0], row("ray", 0, 20, 1)]) == ("object", 1)
     begun = [
         *rows,
         row("object", 1, 10, 1),

@@ -63,12 +63,12 @@
       ...rowsOf[number].map((row) => made("td", { class: "n" }, grouped(rows[name][row])))));
     find("point-rows").replaceChildren(made("tbody", {}, ...lines));
   };
-  const stacked = (id, numbers, parts, alt) => {
+  const stacked = (id, numbers, parts, alt, unit = "") => {
     const names = numbers.map((n) => depth.policies[points.policy[n]]);
     const escaped = names.map((name) => name.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;"));
     const traces = Object.entries(parts).map(([part, values]) => ({
       type: "bar", orientation: "h", name: part, legendgroup: part, x: values, y: numbers.map((_, place) => place), customdata: numbers,
-      text: values.map((value, place) => `<b>${part}</b><br>${escaped[place]}: ${short(value)}`),
+      text: values.map((value, place) => `<b>${part}</b><br>${escaped[place]}: ${short(value)}${unit}`),
       marker: { color: `var(--p${depth.colours[part]})`, line: { width: 0 } },
     }));
     const layout = { barmode: "stack", bargap: 0.3, showlegend: false, hovermode: "closest", margin: { l: 10 },
@@ -102,7 +102,7 @@
     find("point-title").textContent = titled(number);
     find("point-limits").textContent = depth.limits[number];
     comparison(numbers, number);
-    stacked("point-accounts", numbers, shares(numbers), "Shares of the time of all PEs");
+    stacked("point-accounts", numbers, shares(numbers), "Shares of the time of all PEs", " %");
     stacked("point-messages", numbers, kinds(numbers), "Messages by kind");
     ownRows(number);
     if (!isClicked) return;

@@ -51,13 +51,14 @@
     return value;
   };
   const dressed = (layout, style) => {
-    const axis = (own) => ({
+    const broken = ({ ticktext }) => (ticktext ? { ticktext: ticktext.map((text) => text.replace(/ (?=[^ ]+$)/, "<br>")) } : {});
+    const axis = (own, names) => ({
       gridcolor: style.getPropertyValue("--grid").trim(), linecolor: style.getPropertyValue("--rule").trim(),
       showline: true, ticks: "outside", ticklen: 4, tickcolor: style.getPropertyValue("--rule").trim(),
-      fixedrange: !fine, ...own, title: { standoff: 8, font: { size: 13 }, ...own.title },
+      fixedrange: !fine, ...own, ...names, title: { standoff: 8, font: { size: 13 }, ...own.title },
     });
     return {
-      ...layout, xaxis: axis(layout.xaxis), yaxis: axis(layout.yaxis), dragmode: fine ? "zoom" : false,
+      ...layout, xaxis: axis(layout.xaxis, broken(layout.xaxis)), yaxis: axis(layout.yaxis), dragmode: fine ? "zoom" : false,
       margin: { l: 48, r: 10, t: 8, b: 40, ...layout.margin }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: style.getPropertyValue("--ink").trim() },
       hoverlabel: { bgcolor: style.getPropertyValue("--raised").trim(), bordercolor: style.getPropertyValue("--rule").trim(),
@@ -66,10 +67,12 @@
   };
   // Bands, and what is said of a point, are worked out here: as data they would be most of the page.
   const short = (value) => String(Number(value.toPrecision(4)));
-  const texts = ({ name, x, y, meta }, { xaxis }) => x.map((at, n) => {
+  // Axes say their unit last, in brackets: "makespan (ms)".
+  const unitOf = ({ title }) => { const unit = /\(([^()]+)\)$/.exec(title?.text ?? ""); return unit ? ` ${unit[1]}` : ""; };
+  const texts = ({ name, x, y, meta }, { xaxis, yaxis }) => x.map((at, n) => {
     const place = xaxis.ticktext && xaxis.tickvals.includes(at) ? xaxis.ticktext[xaxis.tickvals.indexOf(at)] : short(at);
     const [low, high] = meta ? [short(meta.low[n]), short(meta.high[n])] : [];
-    return `<b>${name}</b><br>at ${place}: ${short(y[n])}${low !== high ? ` (${low} to ${high})` : ""}`;
+    return `<b>${name}</b><br>at ${place}${unitOf(xaxis)}: ${short(y[n])}${low !== high ? ` (${low} to ${high})` : ""}${unitOf(yaxis)}`;
   });
   const band = ({ name, legendgroup, x, meta }) => ({
     type: "scatter", name, legendgroup, mode: "lines", line: { width: 0 }, hoverinfo: "skip", fill: "toself", fillcolor: meta.band,

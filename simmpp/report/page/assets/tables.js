@@ -30,13 +30,25 @@
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   };
 
+  // As programs read them: 1,234 is a number, not two.
+  const plain = (text) => (/^-?\d{1,3}(,\d{3})+$/.test(text) ? text.replaceAll(",", "") : text);
+  const textsOf = (row) => [...row.cells].map((cell) => cell.textContent.trim());
+  const files = (region, labelled) => {
+    const name = region.getAttribute("aria-label");
+    const buttons = Object.entries(labelled).map(([label, rows]) => {
+      const button = made("button", { type: "button", class: "link", "aria-label": `${label}: ${name}` }, label);
+      button.addEventListener("click", () => download(`${name} ${label.replace("CSV", "")}`, rows()));
+      return button;
+    });
+    region.after(made("p", { class: "files screen" }, "As a file: ", ...buttons.flatMap((button, n) => (n ? [", ", button] : [button]))));
+  };
+
   // A line has its cells as texts, and the element that shows them, made when it is first needed;
-  // a file its name, and rows made of the lines that are shown, the header first.
-  const linesOf = (table) => [...table.tBodies[0].rows].map((row) => ({ cells: [...row.cells].map((cell) => cell.textContent.trim()), element: () => row }));
-  const enhance = (table, lines = linesOf(table), files = null) => {
-    const region = table.closest(".scroll"), name = region.getAttribute("aria-label");
-    const heads = [...table.tHead.rows[0].cells], header = heads.map((head) => head.textContent);
-    files ??= { CSV: (found) => [header, ...found.map((line) => line.cells)] };
+  // a file its label, and rows made of the lines that are shown, the header first.
+  const linesOf = (table) => [...table.tBodies[0].rows].map((row) => ({ cells: textsOf(row), element: () => row }));
+  const enhance = (table, lines = linesOf(table), exported = null) => {
+    const region = table.closest(".scroll"), heads = [...table.tHead.rows[0].cells], header = textsOf(table.tHead.rows[0]);
+    exported ??= { CSV: (found) => [header, ...found.map((line) => line.cells.map(plain))] };
     let by = -1, way = 1, wanted = [], among = null;
     for (const line of lines) line.text = line.cells.join(" ").toLowerCase();
     const chosen = () => {
@@ -65,15 +77,12 @@
     const filter = made("input", { type: "search", autocomplete: "off", placeholder: "part of a row" });
     filter.addEventListener("input", () => { wanted = filter.value.toLowerCase().split(/\s+/); show(); });
     if (lines.length > FEW) region.before(made("div", { class: "tools screen" }, made("label", {}, "filter ", filter), number));
-    const buttons = Object.entries(files).map(([label, rows]) => {
-      const button = made("button", { type: "button", class: "link", "aria-label": `${label}: ${name}` }, label);
-      button.addEventListener("click", () => download(`${name} ${label.replace("CSV", "")}`, rows(chosen())));
-      return button;
-    });
-    region.after(made("p", { class: "files screen" }, "As a file: ", ...buttons.flatMap((button, n) => (n ? [", ", button] : [button]))));
+    files(region, Object.fromEntries(Object.entries(exported).map(([label, rows]) => [label, () => rows(chosen())])));
     const only = (test) => { [among, wanted, filter.value] = [test, [], ""]; show(); };
     return { show, only };
   };
   document.querySelectorAll("table[data-table]").forEach((table) => enhance(table));
+  // Those that are filled later are as they are when they are asked for.
+  document.querySelectorAll("table[data-file]").forEach((table) => files(table.closest(".scroll"), { CSV: () => [...table.rows].map((row) => textsOf(row).map(plain)) }));
   window.simmpp.enhance = enhance;
 })();

@@ -3,7 +3,7 @@
   const { made } = window.simmpp;
   const terms = [...document.querySelectorAll("#words dt")];
   const pattern = new RegExp(`(?<![\\w-])(?:${terms.map((term) => `(${term.dataset.forms})`).join("|")})(?![\\w-])`, "gi");
-  const LEFT_OUT = "a, button, code, label, svg, h2, h3, h4, .chart, .tall tbody, #words";
+  const LEFT_OUT = "a, button, code, label, summary, svg, h2, h3, h4, .chart, .tall tbody, #words";
   const told = (term) => ({ "aria-describedby": term.nextElementSibling.id });
 
   const mark = (text, seen) => {

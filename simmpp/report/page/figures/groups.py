@@ -19,8 +19,8 @@ LIMITS = (
     "their size. Copying: packing and unpacking by the byte, and probes. One hot PE: how much "
     "longer the busiest PE works than the next. Imbalance: how much longer that one works than the "
     "mean. Latency and bandwidth: when even the busiest PE waits, divided as flights of messages "
-    "are. Rows of sweeps know these four as waiting; simmpp run --out tells them apart. If a part "
-    "were gone, the makespan would be shorter by that at most."
+    "are. Rows of sweeps know these four as waiting; simmpp run --out tells them apart. Parts are "
+    "means over PEs: they say where the time is, not how much shorter it would be without one."
 )
 
 

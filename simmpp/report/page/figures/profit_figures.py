@@ -146,7 +146,8 @@ def _panels(
         placed = {n: _place(data, n, along, places[data.rows[n][along]]) for n in of}
         units = {n: Spread(*(end / size for end in spreads[n])) for n in of}
         curves[title] = list(_curves(data, placed, units, name))
-    y = _scale(measure.title.lower() + (f" ({unit})" if unit else ""), chain(*curves.values()))
+    label = words.uncapital(measure.title) + (f" ({unit})" if unit else "")
+    y = _scale(label, chain(*curves.values()))
     return [Panel(title, x, y, of, level=measure.level) for title, of in curves.items()]
 
 

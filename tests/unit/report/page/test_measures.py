@@ -116,6 +116,7 @@ def test_makespans_have_the_unit_that_fits() -> None:
     ]
     (panel,) = panels(rows, "makespan")
     assert panel.y.label == "makespan (ms)"
+    assert panels(rows, "peak-bytes")[0].y.label == "bytes per PE (B)"
     assert [s.mean for s in panel.curves[0].points.values()] == [2, 30, 4]
 
 

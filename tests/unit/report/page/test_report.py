@@ -156,6 +156,11 @@ def test_only_a_page_of_a_running_sweep_reloads_itself(tmp_path: Path) -> None:
     assert not any("location.reload" in text for text in done.scripts if text not in script())
 
 
+def test_a_place_is_told_with_what_its_pes_hold() -> None:
+    rows = [row(processors=n, fraction=0.2, effective_fraction=0.25) for n in (4, 8)]
+    assert depth_in(points_of(rows, ()))["places"] == ["4 PEs (PEs hold 25 %)", "8 PEs"]
+
+
 def test_rows_of_experiments_that_pack_lie_beside_rows_of_others() -> None:
     rows = [row(processors=2), row(processors=4) | {"request_parts": 5}]
     depth = depth_in(points_of(rows, ()))
