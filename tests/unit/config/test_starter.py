@@ -15,7 +15,7 @@ from simmpp.config.starter import CHOICES, starter
 
 LINES = starter().splitlines()
 SETTABLE = [n for n, line in enumerate(LINES) if re.match(r" *#\w+:", line)]
-EXAMPLES = ("bytes", "shape", "label", "sweep")
+EXAMPLES = ("bytes", "fetch", "shape", "label", "sweep")
 """Without a default: what stands there is an example."""
 
 
