@@ -18,7 +18,12 @@ UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "chec
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""
-SAME = {"memory.fraction": "memory.bytes", "memory.bytes": "memory.fraction"}
+SAME = {
+    "memory.fraction": "memory.bytes",
+    "memory.bytes": "memory.fraction",
+    "memory.transient": "memory.fetch",
+    "memory.fetch": "memory.transient",
+}
 """Keys that say the same in another way: setting one takes the other back."""
 
 
@@ -58,7 +63,8 @@ def _refuse_twice(axes: Iterable[Axis]) -> None:
             if key in other:
                 raise ConfigError(f"{key} is swept twice: expected one axis with it")
             if SAME.get(key) in other:
-                raise ConfigError(f"expected {' or '.join(SAME)}, got both")
+                both = " or ".join(pair for pair in SAME if pair in (key, SAME[key]))
+                raise ConfigError(f"expected {both}, got both")
 
 
 def keys_of(axis: Axis) -> list[str]:

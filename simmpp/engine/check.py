@@ -68,7 +68,7 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
         "replica_objects": _lie_below(placement.replica_objects, n_objects),
         "pixel_pes": len(placement.pixel_pes) == workload.n_primaries
         and _lie_below(placement.pixel_pes, nb),
-        "transient": placement.transient >= 0,
+        "transient": min(placement.transient, placement.transient_bytes) >= 0,
     }
     for name, does in fits.items():
         if not does:

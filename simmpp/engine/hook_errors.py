@@ -69,8 +69,9 @@ def _note(unraisable: Any) -> None:
     if not raised:
         error = unraisable.exc_value or unraisable.exc_type()
         raised.append((error, state.arrays["policy_views"].copy()))
-        for hook in ("send", "ask"):
-            state.runs[hook] = address_of(nothing)
+        for hook in ("send", "ask", "keep"):
+            if state[hook]:
+                state.runs[hook] = address_of(nothing)
 
 
 def _explained(

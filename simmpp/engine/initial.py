@@ -110,13 +110,21 @@ def _sizes(
         nb=nb,
         objects=n_objects,
         rays=n_rays,
-        misses=1 + min(nb * n_objects, n_rays + nb * (placement.transient + 1)),
+        misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),
         peers=1 + min(nb * nb, 2 * workload.n_tests * each),
         sent=sent,
         tested=workload.n_tests if recording.tests else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
     )
+
+
+def _most_kept(workload: Workload, placement: Placement) -> int:
+    """Fetched objects that a PE keeps at most."""
+    if not placement.transient_bytes:
+        return placement.transient
+    smallest_first = np.cumsum(np.sort(workload.object_bytes))
+    return int(np.searchsorted(smallest_first, placement.transient_bytes, side="right"))
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
@@ -168,7 +176,9 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "processors": machine.processors,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
+        "transient_bytes": placement.transient_bytes,
         "row_bytes": row_bytes(placement, workload.n_objects),
         "initial_load": workload.n_primaries // machine.processors,
     }
@@ -194,10 +204,12 @@ def _of_the_policy(
         "asks": policy.asks,
         "send": address_of(policy.send, names),
         "ask": address_of(policy.ask, names),
+        "keep": address_of(policy.keep, names),
         "send_from": count(policy.batch),
         "ask_from": count(policy.ask_at_least),
         "send_reads": groups_read(policy.send),
         "ask_reads": groups_read(policy.ask),
+        "keep_reads": groups_read(policy.keep),
         "remembers": _remembers(policy),
         "to_holders": policy.to_holders,
         "load_info": EXACT if load_info == SAMPLED and parameters.sample_ps == 0 else load_info,

@@ -119,6 +119,8 @@ class Memory:
     share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
     are resident in the mean). The replicated scene fetches none."""
 
+    fetch: Size | None = None
+    """The other way to say it: room for fetched objects, in place of a number of them."""
     hot: Share = Fraction(0)
     """Share of the objects, those most used for their size in a coarse pre-pass, that come first on
     every PE; they count as residents."""
@@ -131,12 +133,15 @@ class Memory:
             bytes: int | str | None = ...,
             residents: Residents = ...,
             transient: Fraction | int | str = ...,
+            fetch: int | str | None = ...,
             hot: Fraction | float | str = ...,
         ) -> None: ...
 
     @property
     def kept(self) -> Fraction | int | Literal["x"]:
         """The transient share or number of objects; ``x`` only where no fraction says which."""
+        if self.fetch is not None:
+            return 0
         by_fraction = self.transient == AS_FRACTION and self.bytes is None
         return self.fraction if by_fraction else self.transient
 
@@ -146,6 +151,8 @@ class Memory:
         """Of what users write; Python's ``replace`` always passes both."""
         if isinstance(given, dict) and "fraction" in given and given.get("bytes") is not None:
             raise mistake("expected fraction or bytes, got both")
+        if isinstance(given, dict) and "transient" in given and given.get("fetch") is not None:
+            raise mistake("expected transient or fetch, got both")
         return given
 
     @model_serializer(mode="wrap")
@@ -153,6 +160,8 @@ class Memory:
         plain: dict[str, Any] = handler(self)
         if self.bytes is not None:
             del plain["fraction"]
+        if self.fetch is not None:
+            del plain["transient"]
         return plain
 
 
@@ -186,6 +195,8 @@ class Placement:
     """Number of fetched objects that a PE's transient memory holds."""
     pixel_pes: NDArray[np.int32]
     """(n0,) int32: the PE that each primary ray starts on."""
+    transient_bytes: int = 0
+    """Bytes of fetched objects that it holds, where a size says so; else 0."""
 
     @property
     def effective_fraction(self) -> float:

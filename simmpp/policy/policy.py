@@ -38,6 +38,11 @@ class Policy:
     ask: Hook | None = None
     """May one object, for which rays wait, be asked for now? 0 no, 1 its owner, 2 + PE that PE,
     where the object is in memory for good; the owner if it isn't."""
+    keep: Hook | None = None
+    """What is a fetched object worth that no ray needs at once any more? 0 or less: nothing, it
+    goes; else its rank in the memory for fetched objects, where the least rank leaves first, of
+    equal ones the least recently used. Without this hook all are equal. What has just come leaves
+    last."""
     batch: int | str = 1
     """``send`` is asked when that many rays wait, or nothing else is to do: a count, or the name of
     a number. So an engine need not look at every PE again and again."""
@@ -67,8 +72,8 @@ class Policy:
     @property
     def hooks(self) -> dict[str, Hook]:
         """Those that it has, by what they are asked."""
-        both = {"send": self.send, "ask": self.ask}
-        return {what: function for what, function in both.items() if function is not None}
+        all_three = {"send": self.send, "ask": self.ask, "keep": self.keep}
+        return {what: function for what, function in all_three.items() if function is not None}
 
     @property
     def sends(self) -> bool:

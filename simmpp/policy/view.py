@@ -14,8 +14,9 @@ NUMBERS = ("min_load", "batch", "ask_at_least")
 class View:
     """What a PE may know when its policy decides; whole numbers (int64), in this order in memory.
 
-    *The other* is, in ``send``, the PE that rays may go to; in ``ask``, the owner of the object. A
-    hook gets, of the fields below, those that it reads; what it does not read costs nothing. A
+    *The other* is, in ``send``, the PE that rays may go to; in ``ask`` and ``keep``, the owner of
+    the object; what is said of ``ask`` holds for ``keep``. A hook gets, of the fields below, those
+    that it reads; what it does not read costs nothing. A
     further field is a line at the end, its group in ``GROUPS`` if it has to be looked up, and its
     value in ``engine.pe.showing``.
     """
@@ -33,7 +34,7 @@ class View:
     held_bytes: int
     """Bytes of the objects in its memory, resident and fetched."""
     nothing_else: int
-    """1 if no ray was ready and the inbox empty when this dispatch began, else 0."""
+    """1 if no ray was ready and the inbox empty when this dispatch began, else 0; ``keep``: 0."""
     initial_load: int
     """Primary rays / nb, rounded down: what is known of a PE before it is heard."""
     other: int

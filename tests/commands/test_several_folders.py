@@ -182,3 +182,18 @@ def test_what_was_interrupted_before_there_were_rows_says_how_to_go_on() -> None
     assert told == f"simmpp: error: {interrupted}; to go on: simmpp bench c.yaml --out d\n"
     with held(Path("d")):
         assert "there are no rows yet: the command that works here" in run("report", "d")[1]
+
+
+def test_points_that_failed_are_not_said_to_be_equal() -> None:
+    rows = sweep(("object", "ray"), fraction=[0.1])
+    half = [
+        failed(r["policy"], r["seed"], fraction=0.1) if r["policy"] == "ray" else r for r in rows
+    ]
+    written(Path("all"), rows)
+    written(Path("half"), half)
+    written(Path("none"), [failed(r["policy"], r["seed"], fraction=0.1) for r in rows])
+    last = [run("compare", "all", other)[1].splitlines()[-1] for other in ("half", "none")]
+    assert last == [
+        "compare: 2 points in both (1 of them failed in one or both); nothing moved.",
+        "compare: 2 points in both (2 of them failed in one or both): there is nothing to compare.",
+    ]

@@ -78,6 +78,12 @@ def of_anyone(v: View) -> int:
     return v.random % (v.nb + 2) + 1
 
 
+def what_it_fancies(v: View) -> int:
+    v.memory[5] += v.held_bytes + v.unasked
+    seen = v.object_bytes + v.now_ps + v.holders + v.nothing_else + v.known_load + v.waiting
+    return (seen + v.memory[5] + v.random) % 5 - 1
+
+
 def no(v: View) -> bool:
     return v.load < 0
 
@@ -106,6 +112,7 @@ def adversary(
         batch=batch,
         ask_at_least=ask_at_least,
         candidates=candidates,
+        keep=what_it_fancies if batch != 1 else None,
         parameters={"greed": 2, "envy": -7},
     )
 
@@ -113,6 +120,8 @@ def adversary(
 def adversarial_case(seed: int) -> Case:
     case = random_case(seed)
     packing = POLICIES["adversary"].packings[seed % 3]
+    if seed % 4 == 1:
+        case = replace(case, placement=replace(case.placement, transient_bytes=700 * seed))
     return replace(case, policy=replace(case.policy, name="adversary", packing=packing))
 
 

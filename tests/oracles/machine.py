@@ -20,6 +20,7 @@ from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
@@ -116,8 +117,8 @@ class Simulation(Dispatch):
         pe.make_ready(released, self.ready_order)
         if pe.rays_of(obj) and pe.in_flight[obj] == 0:
             pe.sendable_since[obj] = pe.next_rank()
-        if self.placement.transient > 0:
-            pe.keep(obj, self.placement.transient)
+        if self.placement.transient or self.placement.transient_bytes:
+            pe.keep(obj, self.is_too_much)
         return released
 
     def compute(self, time: int, pe: PE) -> int:
@@ -149,10 +150,26 @@ class Simulation(Dispatch):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
+        clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
         self.positions[ray] += 1
+        was_granted = ray in pe.granted
         pe.granted.discard(ray)
         pe.use(obj)
-        return self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
+        if was_granted and obj in pe.transient and obj not in self.pinned(pe) and self.rules.keep:
+            pe.clock = clock
+            draws = "random" in names_in(self.rules.keep)
+            unasked = len(self.unasked(pe, obj))
+            rank = int(self.rules.keep(self.view_of_object(pe, obj, unasked, False, draws)))
+            pe.worth[obj] = rank
+            if rank <= 0:
+                pe.transient.remove(obj)
+        return clock
+
+    def is_too_much(self, objects: list[int]) -> bool:
+        """Do these fetched objects exceed the room for them?"""
+        if self.placement.transient_bytes:
+            return sum(self.object_bytes[o] for o in objects) > self.placement.transient_bytes
+        return len(objects) > self.placement.transient
 
     def finish(self, clock: int, pe: PE, ray: int) -> int:
         """A ray is shaded and leaves its children here."""

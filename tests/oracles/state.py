@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -83,6 +84,8 @@ class PE:
     refresh_allowed: bool = True
     in_flight_to: Counter[int] = field(default_factory=Counter)
     """PE: rays sent to it since it was heard."""
+    worth: dict[int, float] = field(default_factory=dict)
+    """Of objects in the transient memory, as the policy says; infinite if it has not."""
     memory: list[int] = field(default_factory=lambda: [0] * 8)
     """For the policy."""
     draws: int = 0
@@ -123,10 +126,12 @@ class PE:
             self.transient.remove(obj)
             self.transient.append(obj)
 
-    def keep(self, obj: int, capacity: int) -> None:
-        """Put a fetched object into the transient memory."""
+    def keep(self, obj: int, is_too_much: Callable[[list[int]], bool]) -> None:
+        """Put a fetched object into the transient memory; those of the least rank leave."""
         if obj in self.transient:
             self.transient.remove(obj)
+        else:
+            self.worth[obj] = float("inf")
         self.transient.append(obj)
-        while len(self.transient) > capacity:
-            del self.transient[0]
+        while is_too_much(self.transient):
+            self.transient.remove(min(self.transient, key=lambda kept: self.worth[kept]))

@@ -133,6 +133,9 @@ class World:
 
     def held_bytes(self, pe: PE) -> int:
         """Bytes of the objects that a PE holds."""
-        pinned = {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
-        held = pe.resident | pinned | set(pe.transient)
+        held = pe.resident | self.pinned(pe) | set(pe.transient)
         return sum(self.object_bytes[o] for o in held)
+
+    def pinned(self, pe: PE) -> set[int]:
+        """Fetched objects that are there for a test that is to be made."""
+        return {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}

@@ -175,17 +175,21 @@ PARAMETERS = (
     "n_objects",
     "contends",  # links and ports serve one message at a time
     "depth_first",
-    "transient",
+    "keeps",  # fetched objects, in transient memory
+    "transient",  # objects that it holds, 0: as many as fit
+    "transient_bytes",  # bytes that it holds, 0: any
     "row_bytes",  # of ``resident``; 0 if replicas are not kept as bits
     "all_resident",
     "sends",
     "asks",
     "send",  # addresses of the policy's hooks, 0 for one that it does not have
     "ask",
+    "keep",
     "send_from",  # waiting rays from which on they are asked
     "ask_from",
     "send_reads",  # groups of the view's fields
     "ask_reads",
+    "keep_reads",
     "remembers",  # each PE has a view of its own
     "to_holders",  # rays may go to any PE that holds what they need
     "random_key",

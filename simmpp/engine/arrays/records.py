@@ -30,6 +30,7 @@ PE = np.dtype(
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
         ("peak_object_bytes", "i8"),  # of held_bytes
+        ("transient_bytes", "i8"),  # of fetched objects that are kept
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
         ("draws", "i8"),  # random numbers that its policy was given
@@ -48,6 +49,7 @@ RAY = np.dtype(
 MISS = np.dtype(
     [
         ("key", "i8"),  # PE * N + object
+        ("rank", "i8"),  # in transient memory: the least leaves first
         ("since", "i8"),  # PE.waits when its oldest unasked ray began to wait
         ("chain", "i4"),
         ("first", "i4"),  # waiting rays, oldest first; NONE: none

@@ -175,7 +175,7 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
     clock_ps = now_ps
     for i in range(n):
         miss_row = sort_items(s)[i]
-        show_object(s, view, me, miss_row, clock_ps)
+        show_object(s, view, me, miss_row, clock_ps, s.ask_reads)
         answer = consult(s.ask, view)
         if answer > 0:
             miss = miss_rows(s)[miss_row]

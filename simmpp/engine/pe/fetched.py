@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import append, find, first, unlink
+from simmpp.engine.arrays.hashtable import append, find, first, following, unlink
 from simmpp.engine.arrays.records import Run
 from simmpp.engine.arrays.views import miss_rows, misses, object_bytes, pes, rays, recent
 from simmpp.engine.pe.candidates import set_sendable
 from simmpp.engine.pe.misses import drop_if_idle
 from simmpp.engine.pe.ready import make_ready
+from simmpp.engine.pe.showing import show_object, view_of
+from simmpp.policy.record import consult
+
+UNRANKED = 1 << 62
+"""The rank of what a policy has not been asked about: it leaves last."""
 
 
 @kernel
@@ -25,7 +30,7 @@ def admit_object(s: Run, me: int, obj: int, links: int) -> None:
     _release(s, me, miss_row, links)
     if miss.requests == 0 and miss.n > 0:
         set_sendable(s, me, miss_row, miss.n)
-    if s.transient > 0:
+    if s.keeps:
         _keep(s, me, miss_row)
     elif miss.pinned == 0:
         pes(s)[me].held_bytes -= object_bytes(s)[obj]
@@ -59,23 +64,54 @@ def _grant(s: Run, ray: int, links: int) -> None:
 
 @kernel
 def _keep(s: Run, me: int, miss_row: int) -> None:
-    """Put a fetched object into transient memory; the least recently used one may have to go."""
+    """Put a fetched object into transient memory; others, or itself, may have to go."""
     pe, miss = pes(s)[me], miss_rows(s)[miss_row]
     if miss.transient == 1:
         touch(s, me, miss_row)
         return
-    miss.transient = 1
+    miss.transient, miss.rank = 1, UNRANKED
     append(recent(s), me, miss_row)
     pe.n_transient += 1
-    if pe.n_transient > s.transient:
-        oldest = first(recent(s), me)
-        evicted = miss_rows(s)[oldest]
-        unlink(recent(s), me, oldest)
-        evicted.transient = 0
-        pe.n_transient -= 1
-        if evicted.pinned == 0:
-            pe.held_bytes -= object_bytes(s)[evicted.key % s.n_objects]
-        drop_if_idle(s, oldest)
+    pe.transient_bytes += object_bytes(s)[miss.key % s.n_objects]
+    while _has_too_much(s, me):
+        leaving = _first_to_leave(s, me)
+        _drop(s, me, leaving)
+        if leaving != miss_row:  # which may still be needed, as who has put it here will see
+            drop_if_idle(s, leaving)
+
+
+@kernel
+def _has_too_much(s: Run, me: int) -> bool:
+    pe = pes(s)[me]
+    if s.transient_bytes > 0:
+        return pe.transient_bytes > s.transient_bytes
+    return pe.n_transient > s.transient
+
+
+@kernel
+def _first_to_leave(s: Run, me: int) -> int:
+    """The least recently used object or, if the policy ranks them, of those of the least rank."""
+    leaving = first(recent(s), me)
+    if s.keep != 0:
+        row = following(recent(s), leaving)
+        while row >= 0:
+            if miss_rows(s)[row].rank < miss_rows(s)[leaving].rank:
+                leaving = row
+            row = following(recent(s), row)
+    return leaving
+
+
+@kernel
+def _drop(s: Run, me: int, miss_row: int) -> None:
+    """Take an object out of transient memory; while it is pinned it stays in memory."""
+    pe, miss = pes(s)[me], miss_rows(s)[miss_row]
+    n_bytes = object_bytes(s)[miss.key % s.n_objects]
+    unlink(recent(s), me, miss_row)
+    miss.transient = 0
+    pe.n_transient -= 1
+    pe.transient_bytes -= n_bytes
+    if miss.pinned == 0:
+        pe.held_bytes -= n_bytes
 
 
 @kernel
@@ -87,10 +123,26 @@ def touch(s: Run, me: int, miss_row: int) -> None:
 
 
 @kernel
-def unpin(s: Run, me: int, miss_row: int, obj: int) -> None:
+def unpin(s: Run, me: int, miss_row: int, obj: int, now_ps: int) -> None:
     """A released ray has made the test that the object was pinned for."""
     miss = miss_rows(s)[miss_row]
     miss.pinned -= 1
-    if miss.pinned == 0 and miss.transient == 0:
-        pes(s)[me].held_bytes -= object_bytes(s)[obj]
+    if miss.pinned == 0:
+        if miss.transient == 0:
+            pes(s)[me].held_bytes -= object_bytes(s)[obj]
+        elif s.keep != 0:
+            _rank(s, me, miss_row, now_ps)
     drop_if_idle(s, miss_row)
+
+
+@kernel
+def _rank(s: Run, me: int, miss_row: int, now_ps: int) -> None:
+    """Ask the policy what an object is worth, now that nothing needs it at once."""
+    view = view_of(s, me)
+    view.nothing_else = 0
+    show_object(s, view, me, miss_row, now_ps, s.keep_reads)
+    rank = consult(s.keep, view)
+    if rank > 0:
+        miss_rows(s)[miss_row].rank = rank
+    else:
+        _drop(s, me, miss_row)

@@ -32,7 +32,7 @@ def is_in_memory(s: Run, me: int, obj: int) -> bool:
         return True
     if _is_replica(s, me, obj):
         return True
-    if s.transient == 0:
+    if not s.keeps:
         return False
     miss_row = find(misses(s), me * s.n_objects + obj)
     return miss_row != NONE and miss_rows(s)[miss_row].transient == 1
@@ -94,7 +94,7 @@ def _miss_of(s: Run, me: int, obj: int) -> int:
         miss.requests = 0
         miss.pinned = 0
         miss.transient = 0
-        if s.sends or s.ask_reads & LOADS:
+        if s.sends or (s.ask_reads | s.keep_reads) & LOADS:
             miss.peer = peer_of(s, me, owners(s)[obj])
     return miss_row
 

@@ -56,25 +56,25 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
 
 
 @kernel
-def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int) -> None:
-    """Show ``ask`` an object that rays wait for."""
+def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: int) -> None:
+    """Show ``ask`` an object that rays wait for, ``keep`` one that they have used."""
     miss = miss_rows(s)[miss_row]
     obj = miss.key % s.n_objects
     other = owners(s)[obj]
     view.load, view.other = pes(s)[me].load, other
     view.waiting, view.unasked = miss.n, miss.unasked
-    if s.ask_reads == 0:
+    if reads == 0:
         return
-    if s.ask_reads & LOADS:
+    if reads & LOADS:
         _show_load(s, view, miss.peer, now_ps)
-    if s.ask_reads & OBJECT:
+    if reads & OBJECT:
         view.object, view.owner, view.requests = obj, other, miss.requests
         view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
         view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
-    if s.ask_reads & WAY:
+    if reads & WAY:
         view.hops = hops(topology(s), me, other)
         _show_fetch(s, view, me, other, object_bytes(s)[obj])
-    _show_self(s, view, me, now_ps, s.ask_reads)
+    _show_self(s, view, me, now_ps, reads)
 
 
 @kernel

@@ -176,7 +176,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             if tests == s.quantum:
                 break
             clock_ps += test_ps(s)[obj]
-            _test(s, me, ray, obj)
+            _test(s, me, ray, obj, clock_ps)
             tests += 1
         else:
             clock_ps += s.ray_ps
@@ -194,17 +194,17 @@ def compute(s: Run, me: int, now_ps: int) -> int:
 
 
 @kernel
-def _test(s: Run, me: int, ray: int, obj: int) -> None:
-    """One ray-object intersection; what it finds is in the workload."""
+def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
+    """One ray-object intersection, which is over now; what it finds is in the workload."""
     if s.record_tests:
         tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
     s.tests += 1
     r = rays(s)[ray]
     r.tested += 1
-    if r.granted or s.transient > 0:
+    if r.granted or s.keeps:
         miss_row = find(misses(s), me * s.n_objects + obj)
         if miss_row != NONE:  # a resident object has none
             touch(s, me, miss_row)
             if r.granted:
-                unpin(s, me, miss_row, obj)
+                unpin(s, me, miss_row, obj, now_ps)
         r.granted = 0

@@ -109,8 +109,11 @@ def outcome(sweeps: SideBySide) -> str:
     moved = {change.number for change in sweeps.changes}
     sure = {change.number for change in sweeps.changes if change.certainty == BEYOND}
     text = f"{counted(sweeps.common, 'point')} in both"
+    text += f" ({sweeps.failed} of them failed in one or both)" if sweeps.failed else ""
     for name, points in sweeps.only:
         text += f", {len(points)} only {name}" if points else ""
+    if sweeps.failed == sweeps.common:
+        return f"{text}: there is nothing to compare."
     if not moved:
         return f"{text}; nothing moved."
     return f"{text}; {len(moved)} moved, {len(sure) or 'none'} beyond the 95 % interval."

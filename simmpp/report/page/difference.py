@@ -68,6 +68,8 @@ class SideBySide:
     only_after: list[str]
     names: tuple[str, str] = NAMES
     """What the two are called."""
+    failed: int = 0
+    """Points that both have and that have no result in one of them, or in both."""
 
     @property
     def only(self) -> list[tuple[str, list[str]]]:
@@ -82,16 +84,17 @@ def difference_of(before: Folder, after: Folder, names: tuple[str, str] = NAMES)
         _refuse_other_axes(one, other)
     old, new = (points_of(folder.rows, further, folder.profits) for folder in (before, after))
     changes: list[Change] = []
-    gone, added, common = [], [], 0
+    gone, added, common, failed = [], [], 0, 0
     for _, number, number_now in matched(*(_numbers(points, further) for points in (old, new))):
         if number is not None and number_now is not None:
             common += 1
+            failed += not (old.runs[number] and new.runs[number_now])
             changes += _changes(old, number, new, number_now)
         elif number is not None:
             gone.append(_said(old, number))
         elif number_now is not None:
             added.append(_said(new, number_now))
-    return SideBySide(old, new, common, changes, gone, added, names)
+    return SideBySide(old, new, common, changes, gone, added, names, failed)
 
 
 def _numbers(points: Points, further: Sequence[str]) -> dict[tuple[Hashable, ...], int]:

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 
+from simmpp.common.units import format_ps
 from simmpp.plot.curves import Spread
 from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.arrangement import abscissas, arrange
 from simmpp.report.page.classical import FREE, Duel, duels_of
 from simmpp.report.page.measures import ALL
 from simmpp.run import words
-from simmpp.sweeps.winners.answer import answer
+from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
@@ -42,18 +43,17 @@ class Win:
     where: str
     """Values of the abscissa."""
     places: int
-    profit: str
-    """Its time profit there."""
+    makespan: str
     lead: str
-    """By how much it is ahead of the next, and who that is."""
+    """How long the next takes, and who that is."""
     sure: str
     points: tuple[int, ...]
     """Numbers of the points that say so."""
 
 
-def sentences(points: Points) -> list[Sentence]:
-    """The answer, then what else there is to know, in a few lines."""
-    return [*answer(points), *_best_gains(points), *_classical(points)]
+def further(points: Points) -> list[Sentence]:
+    """What there is to know besides the answer, in a few lines."""
+    return [*_best_gains(points), *_classical(points)]
 
 
 def _best_gains(points: Points) -> Iterator[Sentence]:
@@ -71,14 +71,14 @@ def _gain(points: Points, title: str, gains: Mapping[int, Spread]) -> Sentence:
     best, worst = (of(gains, key=lambda n: gains[n].mean) for of in (max, min))
     gain, names = gains[best], list(points.axes)
     spread = f"95 % interval {gain.low:.3g} to {gain.high:.3g}" if gain.low < gain.high else ""
-    where = words.point(points.profits[best], names)
+    where = _point(points, best, names)
     aside = "; ".join(filter(None, (where, spread)))
     text = f"{words.capital(words.policy(title))}: time profit {gain.mean:.3g}"
     text += f" ({aside})" if aside else ""
     if len(gains) == 1:
         return Sentence(text + ".", (best,))
     middle = median(of.mean for of in gains.values())
-    where = words.point(points.profits[worst], names)
+    where = _point(points, worst, names)
     text += f" at best, {middle:.3g} in the median, {gains[worst].mean:.3g} at worst ({where})."
     return Sentence(text, (best, worst))
 
@@ -98,9 +98,10 @@ def _classical(points: Points) -> Iterator[Sentence]:
             (which,), how = ways, words.point(points.profits[duels[0].classical], free)
             where, end = f"{which} ({how})" if how else which, ""
         else:
-            at = "; ".join(f"{way} at {number}" for way, number in ways.most_common())
+            first, *others = (f"{way} in {number}" for way, number in ways.most_common())
             over = f" (over {', '.join(free)})" if free else ""
-            where, end = f"{at} of {len(duels)} places{over}", f" (less at {beaten or 'none'})"
+            where = f"{', '.join([f'{first} of {len(duels)} cases', *others])}{over}"
+            end = f", less time in {beaten or 'none'}"
         text = f"With no more memory than {flow} the best classical way is {where}: {flow} takes"
         text += f" {times} times as long{end}{_not_run(duels)}."
         yield Sentence(text, tuple(duel.other for duel in duels))
@@ -110,7 +111,7 @@ def _not_run(duels: Sequence[Duel]) -> str:
     """Classical dataflows that are not among those that were compared."""
     counts = Counter(name for duel in duels for name in duel.absent)
     return "".join(
-        f"; {words.policy(name)} was not run" + ("" if n == len(duels) else f" at {n} of them")
+        f"; {words.policy(name)} was not run" + ("" if n == len(duels) else f" in {n} of them")
         for name, n in counts.items()
     )
 
@@ -138,17 +139,23 @@ def _wins_of(points: Points, of: str, contests: Sequence[Contest], along: str) -
             winner,
             _where(points, contests, places, along),
             len(places),
-            words.span(_gains(points, won)),
+            _makespans(points, won),
             _lead(points, won),
             _sure(won),
             tuple(contest.best for contest in won),
         )
 
 
-def _gains(points: Points, won: Sequence[Contest]) -> Iterator[float]:
-    for contest in won:
-        if gain := TIME_PROFIT.spread(points, contest.best):
-            yield gain.mean
+def _makespans(points: Points, won: Sequence[Contest]) -> str:
+    """The least and the greatest, each the geometric mean of its seeds."""
+    of = [[row["makespan_ps"] for row in points.runs[contest.best]] for contest in won]
+    ends = sorted(of_logarithms(seeds).mean for seeds in of)
+    least, most = (format_ps(int(float(f"{end:.3g}"))) for end in (ends[0], ends[-1]))
+    return least if least == most else f"{least} to {most}"
+
+
+def _point(points: Points, number: int, names: Sequence[str]) -> str:
+    return words.point({name: points.at(number, name) for name in names}, names)
 
 
 def _winner(points: Points, contest: Contest) -> str:
@@ -174,8 +181,8 @@ def _lead(points: Points, won: Sequence[Contest]) -> str:
     seconds = {points.profits[contest.second or 0]["policy"] for contest in ahead}
     if not ahead:
         return ""
-    lead = words.span((contest.lead - 1) * 100 for contest in ahead)
-    return f"{lead} % over {' or '.join(sorted(seconds))}"
+    longer = words.times_as_long(contest.lead for contest in ahead)
+    return f"{longer} ({' or '.join(sorted(seconds))})"
 
 
 def _sure(won: Sequence[Contest]) -> str:

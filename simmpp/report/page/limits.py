@@ -95,7 +95,8 @@ def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
             of = [limits.of[n].shares[part] * 100 for n in best if limits.of[n].first == part]
             number = f"{count} of {len(best)} cases" if not parts else f"{count}"
             parts.append(f"by {part} in {number} ({words.span(of)} % of the makespan)")
-        yield Sentence(f"The fastest dataflow is limited most {', '.join(parts)}.", tuple(best))
+        text = f"Besides computing, the fastest dataflow is limited most {', '.join(parts)}."
+        yield Sentence(text, tuple(best))
 
 
 def limit_table(limits: PointLimits) -> list[Row]:
@@ -112,7 +113,7 @@ def _line(limits: PointLimits, number: int, axes: list[str]) -> Row:
     makespan = of_logarithms([row["makespan_ps"] for row in points.runs[number]]).mean
     of, shares = limits.of[number], limits.shares(number)
     return {
-        **{words.SHORT.get(n, n): words.value(n, points.profits[number][n]) for n in axes},
+        **{words.SHORT.get(n, n): words.value(n, points.at(number, n)) for n in axes},
         "policy": points.flow(number),
         "makespan": format_ps(int(float(f"{makespan:.4g}"))),
         **{part: f"{share * 100:.3g} %" for part, share in shares.items()},

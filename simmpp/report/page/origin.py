@@ -19,10 +19,15 @@ def facts(folder: Folder) -> list[str]:
     if not rows:
         return ["no rows yet"]
     parts = [f"{name}: {part.path}" for name, part in folder.parts.items()]
-    pes = words.said("processors", processors[0])
-    if len(processors) > 1:
-        pes = f"{processors[0]} to {processors[-1]} PEs"
-    return [*parts, named, pes, counted(folder.seeds, "seed"), counted(len(rows), "row")]
+    many = "processing element (PE)" if processors == [1] else "processing elements (PEs)"
+    pes = f"{words.span(processors)} {many}"
+    return [
+        *parts,
+        f"simulated: {named}",
+        pes,
+        counted(folder.seeds, "seed"),
+        counted(len(rows), "row"),
+    ]
 
 
 def origin(folder: Folder) -> list[tuple[str, str]]:

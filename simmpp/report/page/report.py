@@ -16,8 +16,9 @@ from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.figure import Figure, figure_data
 from simmpp.report.page.figures.groups import FIGURE_GROUPS, LIMITS_ID, FigureGroup
-from simmpp.report.page.findings import sentences, wins
+from simmpp.report.page.findings import further, wins
 from simmpp.report.page.folder import Folder, read_folder
+from simmpp.report.page.glossary import glossary
 from simmpp.report.page.limits import (
     PointLimits,
     limit_sentences,
@@ -31,6 +32,7 @@ from simmpp.report.page.together import warnings_of_all
 from simmpp.run import words
 from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
+from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.contest import replicated_policies
 from simmpp.sweeps.winners.points import Points, points_of
 from simmpp.sweeps.winners.sentence import Sentence
@@ -128,11 +130,13 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "facts": facts(folder),
         "live": f"running: {standing_of(folder).progress}" if is_running else "",
         "warnings": report.warnings(is_followed=is_running),
+        "answer": [] if _has_no_rows(report) else answer(report.points),
+        "flows": _flows(report.points),
         "sentences": _sentences(report),
         "limits": limit_table(report.limits),
         "limits_of": LIMITS_ID,
         "wins": wins(points),
-        "along": {"policy": "", "fraction": "x"}.get(along, along),
+        "along": {"policy": "", "fraction": "scene in memory"}.get(along, along),
         "claims": folder.claims,
         "verdicts": _verdicts(folder),
         "groups": [(g.id, g.name, g.text, figures) for g, figures in report.groups.items()],
@@ -147,9 +151,21 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
 
 
 def _sentences(report: Report) -> list[Sentence]:
-    if report.folder.bench and not report.folder.rows:
+    if _has_no_rows(report):
         return []
-    return [*sentences(report.points), *limit_sentences(report.limits)]
+    return [*further(report.points), *limit_sentences(report.limits)]
+
+
+def _has_no_rows(report: Report) -> bool:
+    """It is of ``bench``, and nothing else is there."""
+    return bool(report.folder.bench) and not report.folder.rows
+
+
+def _flows(points: Points) -> str:
+    """What the policies of a page do, in the words of the guide."""
+    meanings = {word.name: word.text for word in glossary()}
+    flows = dict.fromkeys(words.policy(points.name(n)) for n in range(len(points.profits)))
+    return "; ".join(f"{flow}: {meanings[flow]}" for flow in flows if flow in meanings)
 
 
 def _verdicts(folder: Folder) -> str:

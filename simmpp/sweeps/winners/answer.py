@@ -23,7 +23,7 @@ from simmpp.sweeps.winners.contest import (
 )
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
 from simmpp.sweeps.winners.sentence import Sentence
-from simmpp.sweeps.winners.several import cases_of, few, told
+from simmpp.sweeps.winners.several import cases_of, few, shortest, told
 
 
 def answer_of(
@@ -48,7 +48,7 @@ def answer(points: Points) -> list[Sentence]:
     elif len(contests) == 1:
         lines = [Sentence(f"{_one(points, contests[0])}.", (contests[0].best,))]
     else:
-        lines = list(told(points, contests))
+        lines = [*told(points, contests), *shortest(points, contests)]
     return [*lines, *_absent(points, contests), *_ceiling(points, contests), *_failed(points)]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from simmpp.common.files import sort_key
@@ -23,25 +23,37 @@ def extent(points: Points, cases: Sequence[int]) -> str:
     )
 
 
-def region(points: Points, some: Sequence[int], cases: Sequence[int]) -> str:
+def region(
+    points: Points, some: Sequence[int], cases: Sequence[int], names: Iterable[str] = ()
+) -> str:
     """Where some of all cases lie: ``"up to 16 PEs, rings:3"``; nothing if that is everywhere.
 
-    Each case is told by a point of it. Axes are told along which the cases have not all values, if
-    that takes few words: all of the cases are there, others may be there too.
+    Each case is told by a point of it. Of all axes, or of those named, these are told along which
+    the cases have not all values, if that takes few words: all of the cases are there, others may
+    be there too.
     """
     parts = []
-    for name in points.axes:
+    for name in names or points.axes:
         here, everywhere = (_values(points, of, name) for of in (some, cases))
         if len(here) < len(everywhere):
             parts.append(_among(name, here, everywhere))
     return ", ".join(filter(None, parts))
 
 
-def dividing_axes(points: Points, some: Sequence[int], cases: Sequence[int]) -> list[str]:
-    """The axes along which they have not all values."""
-    return [
-        n for n in points.axes if len(_values(points, some, n)) < len(_values(points, cases, n))
-    ]
+def deciding_axes(points: Points, winners: Mapping[int, str]) -> dict[str, bool]:
+    """Axes along which cases differ in nothing else, and whether not all have the same winner.
+
+    ``winners`` by a point of the case. Of an axis without such cases nothing is known.
+    """
+    found = {}
+    for name in points.axes:
+        alike: dict[tuple[Any, ...], list[str]] = {}
+        for case, winner in winners.items():
+            others = tuple(points.at(case, other) for other in points.axes if other != name)
+            alike.setdefault(others, []).append(winner)
+        if any(len(of) > 1 for of in alike.values()):
+            found[name] = any(len(set(of)) > 1 for of in alike.values())
+    return found
 
 
 def _values(points: Points, cases: Sequence[int], name: str) -> list[Any]:

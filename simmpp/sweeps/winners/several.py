@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from simmpp.common.units import format_ps
 from simmpp.run import words
+from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.winners.contest import EQUAL, SURE, TOO_FEW_SEEDS, UNSURE, Contest
 from simmpp.sweeps.winners.points import Points
-from simmpp.sweeps.winners.regions import dividing_axes, extent, region
+from simmpp.sweeps.winners.regions import deciding_axes, extent, region
 from simmpp.sweeps.winners.sentence import Sentence
 
 MOSTLY = 0.75
 """Share of the cases from which one winner is what one should take."""
+OTHER_WORK = ("scene", "picture", "folder", "method")
+"""Keys by which cases are not the same work, or not told by the same means."""
 
 
 def told(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
@@ -35,16 +39,17 @@ def _winners(
 ) -> Iterator[str]:
     """Who is fastest in how many cases, and where these lie; what to do, if that is one thing."""
     first, *others = ranked
-    best = points.flow(first[0].best)
+    best, decides = points.flow(first[0].best), _decides(points, ranked) if others else {}
+    causes = [name for name, is_one in decides.items() if is_one]
     if _is_best_choice(points, best, first, contests):
         beginning = points.taken(first[0].best)
     elif others:
-        beginning = f"Who wins {_causes(points, ranked, contests)}: {best}"
+        beginning = f"Who wins {_causes(decides)}: {best}"
     else:
         beginning = best
-    yield f"{beginning} is fastest in {_share(points, first, contests)}"
+    yield f"{beginning} is fastest in {_share(points, first, contests, causes)}"
     for won in others:
-        yield f"{points.flow(won[0].best)} in {len(won)}{_where(points, won, contests)}"
+        yield f"{points.flow(won[0].best)} in {len(won)}{_where(points, won, contests, causes)}"
 
 
 def _is_best_choice(
@@ -60,26 +65,44 @@ def _foremost(points: Points, contest: Contest) -> list[str]:
     return [points.flow(number) for number in (contest.best, *contest.rivals)]
 
 
-def _causes(
-    points: Points, ranked: Sequence[Sequence[Contest]], contests: Sequence[Contest]
+def _decides(points: Points, ranked: Sequence[Sequence[Contest]]) -> dict[str, bool]:
+    """Whether an axis decides who wins, as far as cases tell."""
+    winners = {contest.best: points.flow(contest.best) for won in ranked for contest in won}
+    return deciding_axes(points, winners)
+
+
+def _causes(decides: Mapping[str, bool]) -> str:
+    """What decides who wins, and what does not."""
+    named = {
+        is_one: [words.CAUSES.get(name, name) for name in decides if decides[name] == is_one]
+        for is_one in (True, False)
+    }
+    if not named[True]:
+        return "differs from case to case"
+    apart = f", not on {words.any_of(named[False])}" if named[False] else ""
+    return f"depends on {words.any_of(named[True], 'and')}{apart}"
+
+
+def _share(
+    points: Points,
+    won: Sequence[Contest],
+    contests: Sequence[Contest],
+    causes: Iterable[str] = (),
 ) -> str:
-    """What decides who wins: axes along which some winner has not all values."""
-    cases = cases_of(contests)
-    found = {name for won in ranked for name in dividing_axes(points, cases_of(won), cases)}
-    causes = [words.CAUSES.get(name, name) for name in points.axes if name in found]
-    return f"depends on {words.any_of(causes, 'and')}" if causes else "differs from case to case"
-
-
-def _share(points: Points, won: Sequence[Contest], contests: Sequence[Contest]) -> str:
     """``"all 5 cases (4 to 64 PEs)"``, ``"3 of 5 cases (up to 16 PEs)"``."""
     if len(won) < len(contests):
-        return f"{len(won)} of {len(contests)} cases{_where(points, won, contests)}"
+        return f"{len(won)} of {len(contests)} cases{_where(points, won, contests, causes)}"
     number = "both" if len(contests) == 2 else f"all {len(contests)}"
     return f"{number} cases{_aside(extent(points, cases_of(contests)))}"
 
 
-def _where(points: Points, some: Sequence[Contest], contests: Sequence[Contest]) -> str:
-    return _aside(region(points, cases_of(some), cases_of(contests)))
+def _where(
+    points: Points,
+    some: Sequence[Contest],
+    contests: Sequence[Contest],
+    causes: Iterable[str] = (),
+) -> str:
+    return _aside(region(points, cases_of(some), cases_of(contests), causes))
 
 
 def cases_of(contests: Sequence[Contest]) -> list[int]:
@@ -89,6 +112,22 @@ def cases_of(contests: Sequence[Contest]) -> list[int]:
 
 def _aside(text: str) -> str:
     return f" ({text})" if text else ""
+
+
+def shortest(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
+    """The least makespan of all cases, where these are of one picture."""
+    if len(contests) < 2 or any(name.split(".")[0] in OTHER_WORK for name in points.axes):
+        return
+    mean_ps = {
+        n: of_logarithms([row["makespan_ps"] for row in points.runs[n]]).mean
+        for n in cases_of(contests)
+    }
+    best = min(mean_ps, key=lambda number: mean_ps[number])
+    where = ", ".join(words.values(name, [points.at(best, name)]) for name in points.axes)
+    most = max(points.profits[n]["processors"] for n in mean_ps)
+    more = "; on more PEs it takes longer" if points.profits[best]["processors"] < most else ""
+    time = format_ps(int(float(f"{mean_ps[best]:.3g}")))
+    yield Sentence(f"The shortest time is {time}: {points.flow(best)}, {where}{more}.", (best,))
 
 
 def _lead(points: Points, won: Sequence[Contest]) -> Iterator[str]:

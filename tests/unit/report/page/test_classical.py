@@ -11,7 +11,7 @@ from sweep_rows import failed, row, timed, written
 
 from simmpp.common.files import Row
 from simmpp.report.page.classical import duels_of
-from simmpp.report.page.findings import sentences
+from simmpp.report.page.findings import further
 from simmpp.report.page.folder import read_folder
 from simmpp.report.page.report import report_of
 from simmpp.sweeps.winners.points import Points, points_of
@@ -29,7 +29,7 @@ def duels(rows: list[Row], *further: str) -> list[tuple[Any, ...]]:
 
 def told(points: Points) -> list[str]:
     beginning = "With no more memory than "
-    return [text for text, _ in sentences(points) if text.startswith(beginning)]
+    return [text for text, _ in further(points) if text.startswith(beginning)]
 
 
 def test_the_faster_classical_dataflow_of_each_place() -> None:
@@ -41,9 +41,9 @@ def test_the_faster_classical_dataflow_of_each_place() -> None:
         rows += timed("replicated", 10, 10, fraction=x)
     assert duels(rows) == [(("ray",), ("concurrent",), 2.0), (("object",), ("concurrent",), 1.0)]
     assert told(points_of(rows, ())) == [
-        "With no more memory than concurrent dataflow the best classical way is ray dataflow at 1; "
-        "object dataflow at 1 of 2 places: concurrent dataflow takes 1 to 2 times as long (less at "
-        "none)."
+        "With no more memory than concurrent dataflow the best classical way is ray dataflow in 1 "
+        "of 2 cases, object dataflow in 1: concurrent dataflow takes 1 to 2 times as long, less "
+        "time in none."
     ]
 
 
@@ -127,8 +127,8 @@ def test_residents_in_bytes_are_kept_as_many_as_there_are() -> None:
     ]
     (text,) = told(points_of(rows, (kept, room)))
     assert text.endswith(
-        "object dataflow at 2 of 2 places (over memory.transient): concurrent dataflow takes 0.75 "
-        "to 1.5 times as long (less at 1); ray dataflow was not run."
+        "object dataflow in 2 of 2 cases (over memory.transient): concurrent dataflow takes 0.75 "
+        "to 1.5 times as long, less time in 1; ray dataflow was not run."
     )
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
-from sweep_rows import failed, timed
+from sweep_rows import timed
 
 from simmpp.common.files import Row
-from simmpp.report.page.findings import sentences, wins
+from simmpp.report.page.findings import wins
 from simmpp.run import words
 from simmpp.sweeps.winners.points import points_of
 
@@ -29,18 +29,13 @@ def test_neighbours_with_one_winner_are_one_line() -> None:
         ("object", "40 %", 1),
         ("object = ray", "100 %", 1),
     ]
-    assert found[0].profit == "2 to 3.02"
-    assert found[0].lead == "100 to 202 % over object"
+    assert found[0].makespan == "100 ps"
+    assert found[0].lead == "2 to 3.02 times as long (object)"
     assert [w.sure for w in found] == [
         "beyond the 95 % interval at each",
         "no difference that these seeds can show",
         "equal in every seed",
     ]
-
-
-def test_rows_that_all_failed_are_said_to_have_no_result() -> None:
-    for rows in ([failed()], []):
-        assert [s.text for s in sentences(points_of(rows, ()))] == ["No point has a result."]
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,8 @@ def test_a_sweep_tells_what_its_rows_know(tmp_path: Path) -> None:
     ((text, points),) = limit_sentences(limits)
     assert points == (1, 3)
     assert text == (
-        "The fastest dataflow is limited most by copying in 2 of 2 cases (15 % of the makespan)."
+        "Besides computing, the fastest dataflow is limited most by copying in 2 of 2 cases (15 % "
+        "of the makespan)."
     )
 
 
