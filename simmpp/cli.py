@@ -12,6 +12,7 @@ import click
 
 from simmpp.common.errors import InputError, ModelError
 from simmpp.common.interrupts import last_word
+from simmpp.common.modules import COMPLETION
 
 COMMANDS = {
     "init": "Write a configuration to begin with, each key explained.",
@@ -146,4 +147,4 @@ def main() -> None:
 
 
 if "_SIMMPP_COMPLETE" in os.environ:  # set by the shell when words are to be completed
-    import_module("simmpp.commands.parts.completion")
+    import_module(COMPLETION)
