@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from difflib import get_close_matches
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -11,6 +12,7 @@ import click
 
 from simmpp.common.errors import InputError, ModelError
 from simmpp.common.interrupts import last_word
+from simmpp.common.modules import COMPLETION
 
 COMMANDS = {
     "init": "Write a configuration to begin with, each key explained.",
@@ -70,6 +72,17 @@ class Commands(click.Group):
         module = import_module(f"simmpp.commands.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; one that there is not is told with the nearest that there is."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            if near := get_close_matches(args[0], COMMANDS, n=1):
+                raise click.UsageError(f"{error.message} Did you mean {near[0]!r}?", ctx) from None
+            raise
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands from the table alone: click would import each for its help."""
@@ -134,4 +147,4 @@ def main() -> None:
 
 
 if "_SIMMPP_COMPLETE" in os.environ:  # set by the shell when words are to be completed
-    import_module("simmpp.commands.parts.completion")
+    import_module(COMPLETION)

@@ -113,10 +113,10 @@ def run_command(
         options.claim(figures, "--figures")
     warn(config, is_swept=False)
     settings = config.settings
-    if settings.sweep or settings.tolerance is not None:
+    if settings.sweep or settings.tolerance is not None or len(settings.seeds) > 1:
         notice(
-            "run simulates one point with one seed; the values under 'sweep', tolerance and refine "
-            "are for simmpp sweep"
+            f"run simulates one point with one seed, {settings.seeds[0]}; the values under "
+            "'sweep', more seeds, tolerance and refine are for simmpp sweep"
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced

@@ -11,10 +11,11 @@ PRELOAD = "simmpp.sweeps.preload"
 PANELS = "simmpp.plot.matplotlib_panels"
 PICTURES = "simmpp.report.run_figures.drawing"
 NOTEBOOK = "simmpp.notebook"
+COMPLETION = "simmpp.commands.parts.completion"
 SERVED = "SIMMPP_SERVED"
 """What PRELOAD reads: the variable of the environment with the process that it is imported for."""
 
 NAMED_MODULES = (
     *(TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE),
-    *(PRELOAD, PANELS, PICTURES, NOTEBOOK),
+    *(PRELOAD, PANELS, PICTURES, NOTEBOOK, COMPLETION),
 )

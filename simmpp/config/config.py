@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from os.path import exists
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,10 @@ def load_config(
     if is_workload(str(path)):
         hint = f"expected a configuration (YAML); `simmpp workload {path}` lists these rays"
         raise ConfigError(hint, where=str(path))
+    if not exists(path) and Path(path).suffix in (".yaml", ".yml"):
+        raise ConfigError(
+            f"there is no such file; `simmpp init {path}` writes one", where=str(path)
+        )
     document = read_yaml(Path(path))
     where = document.where
     if document.data is None:

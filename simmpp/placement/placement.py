@@ -162,6 +162,8 @@ class Memory:
             del plain["fraction"]
         if self.fetch is not None:
             del plain["transient"]
+        if not self.hot:
+            del plain["hot"]
         return plain
 
 

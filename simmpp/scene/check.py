@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from simmpp.common.errors import SceneError
+from simmpp.scene.columns import FLAT
 from simmpp.scene.scene import Material, MeshPart, Polygon, Scene, SceneObject
 
 
@@ -29,7 +30,8 @@ def _problems(scene: Scene) -> Iterator[tuple[str, str]]:
         yield f"the colour of light {number}", _problem_of_numbers(light.colour)
     yield "the background", _problem_of_numbers(scene.background)
     for number, obj in enumerate(scene.objects):
-        yield f"object {number}", _problem_of_object(obj, len(scene.materials))
+        if problem := _problem_of_object(obj, len(scene.materials)):
+            yield f"object {number}", problem
 
 
 def _problem_of_material(m: Material) -> str:
@@ -51,7 +53,7 @@ def _problem_of_numbers(numbers: Iterable[float]) -> str:
 def _problem_of_object(obj: SceneObject, n_materials: int) -> str:
     if not 0 <= obj.material < n_materials:
         return f"has material {obj.material}, expected one of the {n_materials} materials"
-    if isinstance(obj, Polygon | MeshPart):
+    if isinstance(obj, FLAT):
         shape = np.shape(obj.vertices)
         if len(shape) != 2 or shape[1] != 3:
             return f"has vertices of shape {shape}, expected (n, 3)"

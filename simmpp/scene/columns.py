@@ -14,6 +14,7 @@ from simmpp.scene.scene import Cone, Floats, MeshPart, Polygon, Scene, SceneObje
 
 KINDS = tuple(of.kind for of in get_args(SceneObject))
 SPHERE, CONE, POLYGON, MESH = range(len(KINDS))
+FLAT = (Polygon, MeshPart)
 Counts = NDArray[np.int64]
 
 
@@ -56,10 +57,10 @@ def columns_of(scene: Scene) -> Columns:
 
 def columns(objects: Sequence[SceneObject]) -> Columns:
     """The columns of objects."""
-    flat = [obj for obj in objects if isinstance(obj, Polygon | MeshPart)]
-    parts = [obj for obj in flat if isinstance(obj, MeshPart)]
     codes = {kind: code for code, kind in enumerate(KINDS)}
     kinds = np.array([codes[obj.kind] for obj in objects], dtype=np.uint8)
+    flat = [obj for obj in objects if isinstance(obj, FLAT)]
+    parts = [obj for obj in flat if isinstance(obj, MeshPart)]
     n_vertices, n_normals, n_faces = np.zeros((3, len(objects)), np.int64)
     n_vertices[kinds >= POLYGON] = [len(obj.vertices) for obj in flat]
     n_faces[kinds == MESH] = [len(part.faces) for part in parts]
@@ -71,23 +72,26 @@ def columns(objects: Sequence[SceneObject]) -> Columns:
     if before.any():  # not in place: the faces of a single part are its own
         faces = faces + np.repeat(before, n_faces[kinds == MESH]).astype(np.int32)[:, None]
     return Columns(
-        kinds,
-        np.array([obj.material for obj in objects], dtype=np.int64),
-        _rows(((*s.centre, s.radius) for s in objects if isinstance(s, Sphere)), 4),
-        _rows(
-            (
-                (*c.base, c.base_radius, *c.apex, c.apex_radius)
-                for c in objects
-                if isinstance(c, Cone)
-            ),
-            8,
-        ),
-        n_vertices,
-        _joined([obj.vertices for obj in flat], np.float64),
-        n_normals,
-        n_faces,
-        faces,
+        kinds=kinds,
+        materials=np.array([obj.material for obj in objects], dtype=np.int64),
+        spheres=_spheres([obj for obj in objects if isinstance(obj, Sphere)]),
+        cones=_cones([obj for obj in objects if isinstance(obj, Cone)]),
+        n_vertices=n_vertices,
+        vertices=_joined([obj.vertices for obj in flat], np.float64),
+        n_normals=n_normals,
+        n_faces=n_faces,
+        faces=faces,
     )
+
+
+def _spheres(spheres: Sequence[Sphere]) -> Floats:
+    radii = np.array([sphere.radius for sphere in spheres], dtype=np.float64)
+    return np.column_stack([_rows([sphere.centre for sphere in spheres], 3), radii])
+
+
+def _cones(cones: Sequence[Cone]) -> Floats:
+    rows = ((*c.base, c.base_radius, *c.apex, c.apex_radius) for c in cones)
+    return _rows(rows, 8)
 
 
 def _rows(rows: Iterable[tuple[float, ...]], width: int) -> Floats:

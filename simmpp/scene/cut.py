@@ -30,6 +30,8 @@ Indices = NDArray[np.integer[Any]]
 """Whole numbers of any width."""
 Cut = Callable[[Floats, Indices], list[Indices]]
 """Vertices (n, 3) and faces (m, 3) -> the rows of ``faces`` in each object."""
+FEW = 512
+"""Parts of so many triangles are cut together: one by one, calls would take most of the time."""
 ODD = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB], np.uint64)
 """Factors that spread neighbours apart. Source: S. Vigna, splitmix64."""
 HALF = np.uint64(32)
@@ -100,10 +102,8 @@ def _numbers(bits: Bits) -> Bits:
     """A number for each row (n, 3), the same for equal ones."""
     total = np.zeros(len(bits), np.uint64)
     for axis, factor in enumerate(ODD):
-        # Products carry upwards only, and the lower half of what was float32 is empty.
-        column = bits[:, axis] ^ (bits[:, axis] >> HALF)
-        total += column * factor
-        total ^= total >> HALF
+        total += bits[:, axis] * factor
+        total ^= total >> HALF  # products carry upwards only
         total *= factor
     return total
 
@@ -180,12 +180,33 @@ def _clusters(vertices: Floats, faces: Indices, most: int) -> list[Indices]:
     waiting = [np.arange(len(faces))]
     while waiting:
         part = waiting.pop()
-        if len(part) <= most:
-            done.append(np.sort(part))
+        if len(part) <= max(most, FEW):
+            done.append(part)
             continue
         points = centroids[part]
         axis = int(np.argmax(points.max(axis=0) - points.min(axis=0)))
         part = part[np.argsort(points[:, axis], kind="stable")]
         half = len(part) // 2
         waiting += [part[half:], part[:half]]
-    return done
+    return _clusters_of_all(centroids, done, most)
+
+
+def _clusters_of_all(centroids: Floats, parts: list[Indices], most: int) -> list[Indices]:
+    """The same of many small parts, all of them bisected at once."""
+    order, sizes = np.concatenate(parts), np.array([len(part) for part in parts])
+    while True:
+        starts = np.cumsum(sizes) - sizes
+        part = np.repeat(np.arange(len(sizes)), sizes)
+        large = sizes > most
+        if not large.any():
+            order = order[np.lexsort((order, part))]
+            return np.split(order, starts[1:])
+        points = centroids[order]
+        spread = np.maximum.reduceat(points, starts) - np.minimum.reduceat(points, starts)
+        axis = np.argmax(spread, axis=1)[part]
+        along = np.take_along_axis(points, axis[:, None], axis=1)[:, 0]
+        along[~large[part]] = 0.0  # stays as it is
+        order = order[np.lexsort((along, part))]
+        lower = np.where(large, sizes // 2, 0)
+        sizes = np.stack([lower, sizes - lower], axis=1).ravel()
+        sizes = sizes[sizes > 0]

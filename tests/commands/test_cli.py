@@ -222,9 +222,10 @@ def test_run_says_that_it_does_not_sweep() -> None:
     done = simmpp("run", "c.yaml", "--set", "sweep.processors=[4, 8]")
     assert done.exit_code == 0, done.output
     assert done.stderr == (
-        "simmpp: run simulates one point with one seed; the values under 'sweep', tolerance and "
-        "refine are for simmpp sweep\n"
+        "simmpp: run simulates one point with one seed, 0; the values under 'sweep', more seeds, "
+        "tolerance and refine are for simmpp sweep\n"
     )
+    assert simmpp("run", "c.yaml", "--set", "seeds=[0, 1]").stderr == done.stderr
     assert simmpp("run", "c.yaml", "--set", "tolerance=2%").stderr == done.stderr
 
 

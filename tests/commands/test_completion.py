@@ -64,7 +64,7 @@ def test_keys_and_their_values() -> None:
     assert completed("run", "--set", "machine.preset", "=") == preset_names()
     assert completed("run", "--set", "ready_order", "=", "b") == ["breadth-first"]
     assert completed("run", "--set", "policy.merge_requests", "=") == ["true", "false"]
-    assert completed("sweep", "--set", "sweep.memory.f") == ["sweep.memory.fraction="]
+    assert completed("sweep", "--set", "sweep.memory.fr") == ["sweep.memory.fraction="]
 
 
 def test_scenes_in_parts_as_bash_has_them() -> None:

@@ -75,6 +75,13 @@ def test_examples_parse(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert all(line in simmpp(name, "--help").stdout for line in lines)
 
 
+def test_a_command_that_there_is_not_is_told_with_the_nearest() -> None:
+    done = simmpp("rnu", "c.yaml")
+    assert done.exit_code == 2
+    assert done.stderr.splitlines()[-1] == "Error: No such command 'rnu'. Did you mean 'run'?"
+    assert "Did you mean" not in simmpp("qqqq").stderr
+
+
 def test_engines_are_those_that_there_are() -> None:
     assert set(ENGINES) == set(simulate.ENGINES)
 

@@ -31,7 +31,7 @@ MISTAKES = [
         "run c.yaml --set reading=x",
         "--set reading: value 'x': expected mixed or plain, or a file .yaml that exists",
     ),
-    ("run none.yaml", "none.yaml: can't read the file: No such file or directory"),
+    ("run none.yaml", "none.yaml: there is no such file; `simmpp init none.yaml` writes one"),
     ("run ''", f"CONFIG: value '': {A_NAME}"),
     ("run c.yaml --engine x", "--engine: value 'x': expected compiled or simpy"),
     (

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from builders import random_case
+from builders import on_torus, random_case
 from by_hand import OBJECT, case_of
 from implementations import run as run_case_on
 
@@ -14,6 +14,7 @@ import simmpp
 from simmpp.common.errors import ConfigError
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.machine import FAT_TREE, LEVELS, FatTree, Level
 from simmpp.machine.torus import LINKS, NO_CONTENTION
 from simmpp.policy.parameters import POLICIES
 from simmpp.scene.scene import Camera, Scene
@@ -70,8 +71,11 @@ def test_a_full_clock_is_an_error_and_never_wraps(engine: str) -> None:
     run_case = (case.workload, case.machine, case.placement, simmpp.PolicyParameters("object"))
     assert simmpp.simulate(*run_case, engine=engine).makespan_ps < CLOCK_LIMIT_PS
     computing = replace(case.machine, ray_ps=CLOCK_LIMIT_PS // 20)
-    waiting = replace(case.machine, latency_ps=CLOCK_LIMIT_PS)
-    for machine in (computing, waiting):
+    waiting = replace(on_torus(case).machine, latency_ps=CLOCK_LIMIT_PS)
+    tree = replace(waiting, topology=FAT_TREE, fat_tree=FatTree(2))
+    levels = (Level("near", 2), Level("far", latency_ps=CLOCK_LIMIT_PS))
+    in_blocks = replace(on_torus(case).machine, topology=LEVELS, levels=levels)
+    for machine in (computing, waiting, tree, in_blocks):
         with pytest.raises(ConfigError, match="exceeds the clock"):
             simmpp.simulate(case.workload, machine, *run_case[2:], engine=engine)
 

@@ -182,7 +182,7 @@ def test_counters_are_those_of_the_event_log(case: Case, engine: str) -> None:
 @pytest.mark.parametrize("engine", list(ENGINES))
 @pytest.mark.parametrize("seed", [227, 363])
 def test_loads_that_never_depart_are_not_counted(seed: int, engine: str) -> None:
-    case = with_policy(random_case(seed), refresh_ps=0, load_info="piggyback")
+    case = with_policy(random_case(seed), refresh_ps=0, sample_ps=None, load_info="piggyback")
     log = counted_run(case, engine)
     assert ((log["event"] == SEND) & (log["number"] == NONE)).any()
 

@@ -53,6 +53,7 @@ def _stamp() -> str:
 
 def collected() -> dict[str, Any]:
     """The words, from where each is declared."""
+    from simmpp import commands as package
     from simmpp.config.keys import keys
     from simmpp.config.reading import reading_names
     from simmpp.config.schema import json_schema
@@ -60,7 +61,7 @@ def collected() -> dict[str, Any]:
     from simmpp.policy.parameters import POLICIES as RULES
     from simmpp.scene.spd.generators import GENERATORS
 
-    schema, package = json_schema(), import_module("simmpp.commands")
+    schema = json_schema()
     commands = [module.name for module in iter_modules(package.__path__) if not module.ispkg]
     scenes = [f"{scene.name}:{scene.default_size}" for scene in GENERATORS.values()]
     names = {

@@ -1,7 +1,8 @@
 """The 8-wide bounding volume tree: which boxes may a ray enter?
 
 Built by binned surface area heuristic (Wald 2007, "On fast construction of SAH-based bounding
-volume hierarchies"): a node splits its costliest segment until it has eight.
+volume hierarchies"): a node splits its costliest segment until it has eight, or all of them fit
+nodes.
 """
 
 from __future__ import annotations
@@ -125,5 +126,7 @@ def _cut_in_eight(boxes: Floats, memory: Scratch, low: int, high: int) -> int:
         for k in range(1, n_segments):
             if memory.costs[k] > memory.costs[worst]:  # of equal ones the first: equal trees
                 worst = k
+        if memory.costs[worst] < 0.0:
+            return n_segments
         split(boxes, memory, worst, n_segments)
     return WIDTH

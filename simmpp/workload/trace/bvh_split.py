@@ -99,9 +99,9 @@ def split(boxes: Floats, memory: Scratch, k: int, n: int) -> None:
 
 @kernel
 def _weigh(memory: Scratch, k: int) -> None:
-    """The cost of a segment: surface times number; -1 for a single box, which is never split."""
+    """The cost of a segment: surface times number; -1 if it fits a node, and need not be split."""
     number = memory.cuts[k + 1] - memory.cuts[k]
-    memory.costs[k] = _area(memory.extents[k]) * number if number > 1 else -1.0
+    memory.costs[k] = _area(memory.extents[k]) * number if number > WIDTH else -1.0
 
 
 @kernel

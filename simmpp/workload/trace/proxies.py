@@ -7,6 +7,7 @@ stopped by its own proxy; what slips past a proxy hits something behind, which i
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from simmpp.workload.workload import CONE, SPHERE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Number = TypeVar("Number", bound=np.generic)
 
 SIDES = 3
 """Sides of the prism in a cone. More triangles, in spheres too, propose more of the hits (a
@@ -40,6 +42,8 @@ def proxy_mesh(geometry: Geometry) -> tuple[NDArray[np.float32], Ints, Ints]:
     n_vertices = len(geometry.vertices)
     for kind, corners_of, sides in ((SPHERE, _in_spheres, TETRAHEDRON), (CONE, _in_cones, PRISM)):
         numbers = np.flatnonzero(geometry.kinds == kind)
+        if not len(numbers):
+            continue
         corners = corners_of(geometry.shapes.surfaces[last[numbers]])
         starts = n_vertices + corners.shape[1] * np.arange(len(numbers))
         vertices.append(corners.reshape(-1, 3).astype(np.float32))
@@ -49,7 +53,11 @@ def proxy_mesh(geometry: Geometry) -> tuple[NDArray[np.float32], Ints, Ints]:
     stands_for = np.full((sum(map(len, faces)), 2), -1, dtype=np.int32)
     stands_for[:, 0] = np.concatenate(owners)
     stands_for[: len(flat_rows), 1] = flat_rows
-    return np.concatenate(vertices), np.concatenate(faces), stands_for
+    return _joined(vertices), _joined(faces), stands_for
+
+
+def _joined(parts: list[NDArray[Number]]) -> NDArray[Number]:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 CORNERS = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) / math.sqrt(3)

@@ -1,4 +1,4 @@
-"""Welding: what sorting the places themselves would give, however the places are told apart."""
+"""Welding is what sorting the places would give; parts are cut together as they are one by one."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.scene import cut
-from simmpp.scene.cut import welded
+from simmpp.scene.cut import cut_named, welded
 
 # Few, so that many places are the same; neighbours; both zeros.
 NUMBERS = st.sampled_from(
@@ -44,6 +44,23 @@ def test_places_of_one_number_are_told_apart(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_neighbours_in_float32_have_numbers_of_their_own() -> None:
     """Else a fine mesh would be sorted by its places after all."""
-    side = np.float32(1) + np.arange(100, dtype=np.float32) * np.float32(2**-23)
+    side = np.float32(1) + np.arange(50, dtype=np.float32) * np.float32(2**-23)
     places = np.stack(np.meshgrid(side, side, side), axis=-1).reshape(-1, 3).astype(np.float64)
     assert len(np.unique(cut._numbers(places.view(np.uint64)))) == len(places)
+
+
+@pytest.mark.parametrize("most", [1, 2, 7, 100])
+def test_clusters_are_the_same_one_by_one_and_together(
+    monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    rng = np.random.default_rng(most)
+    vertices = rng.integers(0, 5, (90, 3)).astype(np.float64)  # with ties
+    faces = rng.integers(0, 90, (333, 3))
+    _, cut_in_clusters = cut_named({"clusters": most})
+    found = []
+    for few in (1, 16, 1000):
+        monkeypatch.setattr(cut, "FEW", few)
+        found.append([part.tolist() for part in cut_in_clusters(vertices, faces)])
+    assert found[0] == found[1] == found[2]
+    assert max(map(len, found[0])) <= most < 2 * min(map(len, found[0])) + 2
+    assert sorted(np.concatenate(found[0])) == list(range(333))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from simmpp.common.errors import SceneError
 from simmpp.scene import nff_objects
 from simmpp.scene.nff import read_nff, write_nff
+from simmpp.scene.nff_words import Words
 from simmpp.scene.scene import (
     Camera,
     Cone,
@@ -355,6 +356,12 @@ def test_runs_are_read_as_their_objects_are_one_by_one(text: str) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(nff_objects, "_count", lambda *_: 0)
         assert outcome(text) == together
+
+
+def test_what_stands_before_a_mistake_is_read_together() -> None:
+    words = Words("s 0 0 0 1\n" * 100 + "s 0 0 0 ?", "a.nff")
+    words.position = 1
+    assert len(nff_objects._alike(words, ["s"], 4)) == 50
 
 
 def test_a_mistake_late_in_a_long_run_is_found_at_its_line() -> None:

@@ -8,6 +8,7 @@ import pytest
 from mesh_files import SQUARE, U, corners_of, facts, ply, ply_header, read
 
 from simmpp.common.errors import SceneError
+from simmpp.scene.formats import ply_body
 from simmpp.scene.scene import Material
 
 ORDERS = ["", "<", ">"]
@@ -229,3 +230,20 @@ def test_refused(tmp_path: Path, content: bytes, line: int, problem: str) -> Non
 
 def test_blank_bytes_may_follow(tmp_path: Path) -> None:
     assert facts(read(tmp_path, "a.ply", ply(SQUARE, [range(4)], "<") + b"\n\0")) == (2, 1)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("size", [3, 4])
+def test_rows_that_are_alike_are_read_as_each_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, order: str, size: int
+) -> None:
+    rng = np.random.default_rng(size)
+    vertices = rng.integers(-9, 9, (40, 3)) / 8
+    content = ply(vertices.tolist(), rng.integers(0, 40, (60, size)).tolist(), order)
+    together = corners_of(read(tmp_path, "a.ply", content))
+
+    def walked(body, element, begin, source):
+        return ply_body._walked(body, element, begin, element.n_rows, source)
+
+    monkeypatch.setattr(ply_body, "_places", walked)
+    np.testing.assert_array_equal(corners_of(read(tmp_path, "a.ply", content)), together)

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simmpp.common.errors import WorkloadError
-from simmpp.scene.scene import Light
+from simmpp.scene.scene import Cone, Light, MeshPart, Polygon, Sphere
 from simmpp.workload.cache import store
 from simmpp.workload.cache.store import load, save, workload_for
 from simmpp.workload.digest import digest_of
@@ -224,3 +224,27 @@ def test_the_digest_is_of_what_makes_a_workload() -> None:
         digest_of(SCENE, dataclasses.replace(PICTURE, samples="corners")),
     ]
     assert len({same_digest, *others}) == 1 + len(others)
+
+
+def test_the_digest_is_of_all_geometry() -> None:
+    corners = np.array([(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 2, 0), (2, 2, 2)])
+    faces = np.array([(0, 1, 2), (0, 2, 3)], np.int32)
+    made = [
+        (Sphere((0.0, 1.0, 2.0), 3.0),),
+        (Sphere((0.0, 1.0, 2.0), 4.0),),
+        (Cone((0.0, 0.0, 0.0), 1.0, (0.0, 0.0, 1.0), 2.0),),
+        (Cone((0.0, 0.0, 0.0), 2.0, (0.0, 0.0, 1.0), 1.0),),
+        (Polygon(corners),),
+        (Polygon(corners[:3]), Polygon(corners[3:])),
+        (Polygon(corners[::-1]),),
+        (MeshPart(corners, faces),),
+        (MeshPart(corners, faces[::-1]),),
+        (MeshPart(corners + 1, faces),),
+        (MeshPart(corners[:4], faces),),
+        (MeshPart(corners[:4], faces), MeshPart(corners[:4], faces[:1])),
+        (MeshPart(corners[:4], faces[:1]), MeshPart(corners[:4], faces)),
+    ]
+    digests = [digest_of(dataclasses.replace(SCENE, objects=each), PICTURE) for each in made]
+    assert len(set(digests)) == len(made)
+    wide = (MeshPart(corners.astype(np.float32), faces.astype(np.int64)),)
+    assert digest_of(dataclasses.replace(SCENE, objects=wide), PICTURE) == digests[7]
