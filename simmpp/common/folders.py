@@ -107,9 +107,8 @@ def note_call(folder: Path, call: str) -> None:
 
     Nothing is noted of the empty text: who calls from Python may have no command.
     """
-    if not call:
-        return
-    write_text(f"{_mark(folder)[0]}\n{Path.cwd()}\n{call}\n", folder / MARK)
+    noted = f"{Path.cwd()}\n{call}\n" if call else ""  # not that of an earlier, other sweep
+    write_text(f"{_mark(folder)[0]}\n{noted}", folder / MARK)
 
 
 def last_call(folder: Path) -> str:

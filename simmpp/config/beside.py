@@ -52,6 +52,6 @@ def nearest(places: Places, path: KeyPath) -> Place:
 
 
 def folder_of(paths: Iterable[KeyPath], places: Places, folder: Path) -> Path:
-    """Files named in a configuration lie beside it; those named by --set, here."""
+    """Files named in a configuration lie beside it; those named by an option, here."""
     wheres = [nearest(places, path)[0] for path in paths]
-    return Path() if any(where.startswith("--set ") for where in wheres) else folder
+    return Path() if any(where.startswith("--") for where in wheres) else folder

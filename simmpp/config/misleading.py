@@ -21,7 +21,7 @@ def misleading(config: Config, *, is_swept: bool) -> list[str]:
     """The warnings, each once; with ``is_swept`` for all points of the sweep, else for its base."""
     points = _points(config) if is_swept else [config]
     swept = [key for axis in config.axes.values() for key in keys_of(axis)] if is_swept else []
-    lines = [*_unused(config, swept), *_long_tori(points), *_own_shares(points, swept)]
+    lines = [*_long_tori(points), *_own_shares(points, config.axes if is_swept else ())]
     for point in points if POLICY in swept else [config]:
         lines += _ignored(point, swept)
     return list(dict.fromkeys(lines))
@@ -33,15 +33,6 @@ def _points(config: Config) -> list[Config]:
     first = dict.fromkeys(axes, 0)
     chosen = [{**first, name: n} for name, axis in axes.items() for n in range(len(axis))]
     return [point_at(config, axes, numbers) for numbers in chosen or [first]]
-
-
-def _unused(config: Config, swept: Sequence[str]) -> Iterator[str]:
-    """Keys of --set that every point has otherwise."""
-    for where in dict.fromkeys(where for where, _ in config.places.values()):
-        key = where.removeprefix("--set ")
-        for name in swept if key != where else ():
-            if f"{key}.".startswith(f"{name}."):
-                yield f"{where}: has no effect: the sweep sets {name} at every point"
 
 
 def _long_tori(points: Sequence[Config]) -> Iterator[str]:
@@ -63,8 +54,9 @@ def _sizes(shape: Sequence[int]) -> str:
 
 
 def _own_shares(points: Sequence[Config], axes: Iterable[str]) -> Iterator[str]:
-    """Fractions up to what a PE owns, where there are several."""
-    by_share = (point for point in points if point.memory.bytes is None)
+    """Fractions up to what a PE owns, where there are several, and are no room for fetched ones."""
+    by_share = [point for point in points if point.memory.bytes is None]
+    by_share = [point for point in by_share if point.memory.kept != point.memory.fraction]
     pairs = [(point.processors, point.memory.fraction) for point in by_share]
     if pairs and {"processors", "memory.fraction"} <= set(axes):  # they are multiplied
         pairs = list(product(*zip(*pairs, strict=True)))

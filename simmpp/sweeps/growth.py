@@ -32,18 +32,18 @@ Identity = Mapping[str, Any]
 
 
 def meanings(
-    policies: Iterable[PolicyParameters],
+    policies: Iterable[tuple[PolicyParameters, str]],
     rays: Iterable[tuple[str, Picture, str]],
-    configs: Iterable[Config],
+    configs: Iterable[tuple[Config, str]],
     points: Iterable[Choice],
 ) -> dict[str, list[Any]]:
     """What names stand for: of policies, of scenes (with picture and digest), of points.
 
     Likewise what the settings of a machine give, which depends on its preset or file, too.
     """
-    named = [(f"policy {policy.title}", decides(canonical(policy))) for policy in policies]
+    named = [(f"policy {p.title}{at}", decides(canonical(p))) for p, at in policies]
     named += [(f"point {p.columns[POINTS[:-1]]}", dict(p.assignments)) for p in points]
-    named += [(_machine(config), constants_of(config)) for config in configs]
+    named += [(f"{_machine(c)}{at}", constants_of(c)) for c, at in configs]
     names: dict[str, list[Any]] = {}
     for name, meaning in named:
         of_name = names.setdefault(name, [])

@@ -29,6 +29,8 @@ from simmpp.sweeps.task import Task, task_of
 
 SET = "--set "
 """What the places of keys begin with that were set on the command line."""
+TELLING = ("policy.", "scene.", "reading", "point")
+"""Columns of swept keys with which a policy, a scene or a machine of one name is another one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +77,13 @@ class Plan:
     def identity(self) -> Identity:
         """What its results are of; a reading counts by what it gives."""
         config = recorded(self.config).items()
-        policies = dict.fromkeys(planned.point.policy for planned in self.points)
-        rays = dict.fromkeys((p.scene, p.point.config.picture, p.task.digest) for p in self.points)
-        configs = {id(p.point.comparison): p.point.config for p in self.points}.values()
+        policies = dict.fromkeys((p.point.policy, _told(p.point)) for p in self.points)
+        rays = dict.fromkeys(
+            (p.scene + _told(p.point), p.point.config.picture, p.task.digest) for p in self.points
+        )
+        configs = {
+            id(p.point.comparison): (p.point.config, _told(p.point)) for p in self.points
+        }.values()
         return {
             "versions": result_versions(),
             "config": {key: said for key, said in config if key not in (*GROWS, READING)},
@@ -177,6 +183,12 @@ def _check_names(points: list[PlannedPoint], further: tuple[str, ...]) -> None:
             raise ConfigError(f"sweep: two different points are both called {text}; name them")
 
 
+def _told(point: GridPoint) -> str:
+    """The swept keys that tell apart what names alone do not: parts of policies and scenes."""
+    swept = {key: value for key, value in point.swept.items() if key.startswith(TELLING)}
+    return f" at {swept}" if swept else ""
+
+
 def _row(planned: PlannedPoint, outcome: Outcome) -> Row:
     """The row of a point, and which simulation it is of."""
     point = planned.point
@@ -219,9 +231,11 @@ def _swept_everywhere(config: Config) -> list[str]:
 
 
 def _refuse_set(source: Source, swept: list[str]) -> None:
-    wheres = dict.fromkeys(where for where, _ in source.places.values() if where.startswith(SET))
-    for where in wheres:
-        key = where.removeprefix(SET)
+    given = {}
+    for path, (where, _) in source.places.items():
+        if where.startswith("--"):  # a short cut has no key in its name
+            given[where] = where.removeprefix(SET) if where.startswith(SET) else path[0]
+    for where, key in given.items():
         for name in swept:
             if key == name or key.startswith(f"{name}."):
                 raise ConfigError(f"{name!r} is swept; set sweep.{name}", where=where)

@@ -48,7 +48,7 @@ LARGER: dict[str, dict[str, Any]] = {
     "an axis less": {"sweep": {"memory.fraction": [0.1, 0.3, 1]}},
     "a tolerance": {"tolerance": "20%", "max_seeds": 12},
     "refined": {
-        **{"tolerance": "20%", "max_seeds": 12, "refine": True, "processors": 2},
+        **{"tolerance": "20%", "max_seeds": 12, "refine": True},
         "sweep": {"memory.fraction": [0.2, 0.3, 1]},
     },
     "everything": {
@@ -129,6 +129,27 @@ def test_in_whatever_order_it_grew(
         found = tables({**SMALL, **LARGER[name]}, out)
     alone = tmp_path_factory.mktemp("alone")
     assert found == tables({**SMALL, **LARGER[steps[-1]]}, alone)
+
+
+@pytest.mark.parametrize(
+    ("key", "first", "more"),
+    [
+        ("policy.batch", [64], [256, 512]),
+        ("reading", ["plain"], ["mixed"]),
+        ("scene.up", ["y"], ["z"]),
+    ],
+)
+def test_new_values_of_what_names_do_not_tell(
+    tmp_path: Path, key: str, first: list[Any], more: list[Any]
+) -> None:
+    """A policy with another number has the same name; the swept key tells which it is."""
+    base = {name: said for name, said in SMALL.items() if name not in (key, "sweep")}
+    if key == "scene.up":
+        (tmp_path / "a.obj").write_bytes(obj(SQUARE, [range(4)]))
+        base["scene"] = {"mesh": str(tmp_path / "a.obj")}
+    tables({**base, "sweep": {key: first}}, tmp_path / "grown")
+    larger = {**base, "sweep": {key: more}}
+    assert tables(larger, tmp_path / "grown") == tables(larger, tmp_path / "fresh")
 
 
 @pytest.mark.parametrize(

@@ -46,16 +46,24 @@ COMMANDS = {
 }
 
 
+HOW_FAR = re.compile(r"simmpp: \d+ of \d+ simulations? done(; to go on: simmpp .*)?")
+"""What sweeps say before."""
+
+
 @pytest.mark.parametrize("number", range(INTERRUPTS))
 @pytest.mark.parametrize("name", COMMANDS)
 def test_interrupted_at_any_moment(tmp_path: Path, name: str, number: int) -> None:
     after_s = random.Random(f"{SEED} {name} {number}").uniform(FIRST_S, LAST_S)
-    assert ended_by(signal.SIGINT, name, after_s, tmp_path) == (130, ["simmpp: interrupted"])
+    code, lines = ended_by(signal.SIGINT, name, after_s, tmp_path)
+    assert (code, lines[-1]) == (130, "simmpp: interrupted")
+    assert all(HOW_FAR.fullmatch(line) for line in lines[:-1]) and len(lines) <= 2, lines
 
 
 @pytest.mark.parametrize("name", ["run", "sweep of 2"])
 def test_terminated_is_likewise(tmp_path: Path, name: str) -> None:
-    assert ended_by(signal.SIGTERM, name, 3.0, tmp_path) == (143, ["simmpp: terminated"])
+    code, lines = ended_by(signal.SIGTERM, name, 3.0, tmp_path)
+    assert (code, lines[-1]) == (143, "simmpp: terminated")
+    assert all(HOW_FAR.fullmatch(line) for line in lines[:-1]) and len(lines) <= 2, lines
 
 
 def test_what_fails_because_of_a_signal_is_not_told(tmp_path: Path) -> None:

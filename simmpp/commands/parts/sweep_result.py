@@ -46,7 +46,9 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
 def _answer(out: Path) -> list[Sentence]:
     """Who wins, as the page of the folder says."""
     folder = read_folder(out)
-    return answer(points_of(folder.rows, folder.further, folder.profits, folder.labels))
+    return answer(
+        points_of(folder.rows, folder.further, folder.profits, folder.labels, folder.confidence)
+    )
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:

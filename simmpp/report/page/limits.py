@@ -14,7 +14,7 @@ from simmpp.common.units import format_ps
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.together import FOLDER
 from simmpp.run import words
-from simmpp.run.limits import PARTS, Limits, MessageCosts, limits_of, together
+from simmpp.run.limits import COMPUTE, PARTS, Limits, MessageCosts, limits_of, together
 from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.winners.contest import contests_of
 from simmpp.sweeps.winners.points import ACCOUNTS, Points
@@ -90,13 +90,19 @@ def limit_sentences(limits: PointLimits) -> Iterator[Sentence]:
         yield Sentence(f"{flow} is {limits.of[best[0]]}.", tuple(best))
     elif best:
         counts = Counter(limits.of[number].first for number in best)
-        parts: list[str] = []
+        near, parts = counts.pop(COMPUTE, 0), list[str]()
         for part, count in counts.most_common():
             of = [limits.of[n].shares[part] * 100 for n in best if limits.of[n].first == part]
             number = f"{count} of {len(best)} cases" if not parts else f"{count}"
             parts.append(f"by {part} in {number} ({words.span(of)} % of the makespan)")
-        text = f"Besides computing, the fastest dataflow is limited most {', '.join(parts)}."
-        yield Sentence(text, tuple(best))
+        texts = []
+        if parts:
+            most = ", ".join(parts)
+            texts.append(f"besides computing, the fastest dataflow is limited most {most}")
+        if near:
+            where = f"in {near} of {len(best)} cases"
+            texts.append(f"{where} it does little but compute: little else is left to gain")
+        yield Sentence(f"{words.capital('; '.join(texts))}.", tuple(best))
 
 
 def limit_table(limits: PointLimits) -> list[Row]:

@@ -71,10 +71,10 @@ def _one(points: Points, contest: Contest) -> str:
         )
     if contest.certainty == EQUAL:
         return f"{words.capital(words.any_of([best, *rivals], 'and'))} are equally fast, to the ps"
-    lead = f"the next, {next_one}, takes {longer}" if longer else ""
+    lead = f"; the next, {next_one}, takes {longer}" if longer else ""
     is_sure = contest.certainty == SURE
     how_sure = f" ({spread})" if is_sure else f"; how sure that is, {few(contest.seeds)} can't tell"
-    return f"{points.taken(contest.best)} is fastest; {lead}{how_sure}"
+    return f"{points.taken(contest.best)} is fastest{lead}{how_sure}"
 
 
 def _spread(contest: Contest) -> str:

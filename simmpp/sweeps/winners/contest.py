@@ -31,7 +31,7 @@ class Contest:
     best: int
     """Number of the fastest point."""
     second: int | None
-    """Of the next."""
+    """Of the next; where seeds can't tell, of the first that they can't tell from it."""
     lead: float
     """T(second) / T(best): the mean of the seeds' own ratios; nan without common ones."""
     low: float
@@ -64,7 +64,12 @@ def contests_of(points: Points) -> list[Contest]:
 
 def replicated_policies(points: Points) -> set[str]:
     """Policies that are no dataflow: the whole scene is in every memory, whatever the fraction."""
-    scarce = [n for n, row in enumerate(points.profits) if row["fraction"] != 1]
+    scarce = [
+        number
+        for place in points.places
+        if any(row["effective_fraction"] < 1 for other in place for row in points.runs[other])
+        for number in place
+    ]  # where all hold everything, as one PE does, nothing tells a dataflow from the ceiling
     titles = {points.profits[n]["policy"] for n in scarce if points.runs[n]}
     for number in scarce:
         if any(row["effective_fraction"] < 1 for row in points.runs[number]):
@@ -77,9 +82,12 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
     times = means(points, flows)
     best, *others = sorted(flows, key=lambda n: times[n])
     ratios = {n: makespan_ratios(points, n, best) for n in others}
-    verdicts = {n: _verdict(of) for n, of in ratios.items()}
-    second = others[0] if others else None
-    lead = of_logarithms(ratios[second]) if second is not None else MeanInterval.unknown()
+    verdicts = {n: _verdict(of, points.confidence) for n, of in ratios.items()}
+    certainty = _certainty([*verdicts.values()])
+    second = next((n for n in others if verdicts[n] == certainty), None)
+    lead = MeanInterval.unknown()
+    if second is not None:
+        lead = of_logarithms(ratios[second], points.confidence)
     top = makespan_ratios(points, best, ceilings[0]) if ceilings else []
     return Contest(
         best,
@@ -87,7 +95,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
         lead.mean,
         lead.low,
         lead.high,
-        _certainty([*verdicts.values()]),
+        certainty,
         tuple(n for n, verdict in verdicts.items() if verdict in (UNSURE, EQUAL)),
         tuple(points.flow(n) for n in (best, *others)),
         len(ratios[second]) if second is not None else len(points.runs[best]),
@@ -111,11 +119,11 @@ def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
     return [ratio(upper["makespan_ps"], lower["makespan_ps"]) for upper, lower in both]
 
 
-def _verdict(ratios: list[float]) -> str:
+def _verdict(ratios: list[float], confidence: float) -> str:
     """Whether one is slower than the fastest."""
     if ratios and all(value == 1 for value in ratios):
         return EQUAL
-    low = of_logarithms(ratios).low
+    low = of_logarithms(ratios, confidence).low
     if math.isnan(low):
         return TOO_FEW_SEEDS
     return SURE if low > 1 else UNSURE

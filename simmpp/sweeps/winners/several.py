@@ -14,7 +14,7 @@ from simmpp.sweeps.winners.sentence import Sentence
 
 MOSTLY = 0.75
 """Share of the cases from which one winner is what one should take."""
-OTHER_WORK = ("scene", "picture", "folder", "method")
+OTHER_WORK = ("scene", "picture", "folder", "method", "point")
 """Keys by which cases are not the same work, or not told by the same means."""
 
 
@@ -46,7 +46,7 @@ def _winners(
     elif others:
         beginning = f"Who wins {_causes(decides)}: {best}"
     else:
-        beginning = best
+        beginning = words.capital(best)
     yield f"{beginning} is fastest in {_share(points, first, contests, causes)}"
     for won in others:
         yield f"{points.flow(won[0].best)} in {len(won)}{_where(points, won, contests, causes)}"

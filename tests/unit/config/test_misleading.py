@@ -64,21 +64,15 @@ def test_one_set_serves_the_policies_that_read_it() -> None:
     assert told(sweep={"policy": both, "policy.min_load": ["1%", "5%"]}) == []
 
 
-def test_what_the_sweep_sets_at_every_point_is_not_set_in_vain() -> None:
-    sweep = {"processors": [8, 64], "memory.fraction": [0.5]}
-    line = "--set processors: has no effect: the sweep sets processors at every point"
-    assert told("processors=32", sweep=sweep) == [line]
-    assert told("processors=32", sweep=sweep, is_swept=False) == []
-    assert told("policy.batch=8", sweep={"policy": ["ray"]}) == [
-        "--set policy.batch: has no effect: the sweep sets policy at every point"
-    ]
-
-
 def test_fractions_below_what_a_pe_owns_are_the_same() -> None:
     sweep = {"memory.fraction": [0.01, 0.05, 0.5], "processors": [64, 8]}
-    assert told(sweep=sweep) == [
+    assert told(sweep=sweep) == []  # the default reading has room for x fetched objects besides
+    none = "memory.transient=0"
+    assert told(none, sweep=sweep) == [
         "memory.fraction 0.01, 0.05 come to the same: each of 8 PEs owns 1/8 of the scene and "
         "holds that"
     ]
-    assert told(sweep=sweep | {"memory.fraction": [0.05, 0.5]}) == []
+    assert told(none, sweep=sweep | {"memory.fraction": [0.05, 0.5]}) == []
+    linked = {"processors, memory.fraction": [[8, 0.2], [64, 0.01], [64, 0.05]]}
+    assert told(none, sweep=linked) == []  # 1 % and 5 % are of 64 PEs alone
     assert told(processors=8, memory={"bytes": "1 B"}) == []

@@ -79,13 +79,25 @@ def test_where_all_is_resident_nobody_is_the_replicated_scene() -> None:
     assert replicated_policies(points_of(rows, ())) == {"replicated"}
 
 
+def test_where_everyone_holds_everything_all_are_dataflows() -> None:
+    rows = [r for p in ("object", "ray") for r in timed(p, 300, processors=1, effective_fraction=1)]
+    assert only(rows).certainty == EQUAL
+
+
+def test_intervals_are_as_wide_as_where_seeds_were_chosen() -> None:
+    rows = timed("object", 100, 100, 100, 100) + timed("ray", 109, 101, 105, 103)
+    plain, wide = (contests_of(points_of(rows, (), confidence=c))[0] for c in (0.975, 0.9995))
+    assert (plain.certainty, wide.certainty) == (SURE, UNSURE)
+    assert wide.low < 1 < plain.low
+
+
 def test_a_lead_is_sure_only_if_it_is_over_every_other() -> None:
     rows = timed("ray", 100, 100, 100) + timed("object", 110, 110, 110)
     rows += timed("concurrent", 100, 300, 100)
     found = only(rows)
     assert found.certainty == UNSURE
     assert found.second is not None  # the mean of the third is larger, yet it may be the fastest
-    assert points_of(rows, ()).flow(found.second) == "object dataflow"
+    assert points_of(rows, ()).flow(found.second) == "concurrent dataflow"  # of object it is sure
     assert [points_of(rows, ()).flow(n) for n in found.rivals] == ["concurrent dataflow"]
 
 
