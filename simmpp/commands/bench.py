@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.progress import progress_of_sweep
 from simmpp.commands.parts.tables import table
 from simmpp.commands.parts.terminal import (
@@ -40,12 +41,14 @@ LARGE = 10
 @options.workers("Processes on this machine; 1 disturbs no times.  [default: one for each core]")
 @options.setting("Set a dotted key; repeatable.")
 @options.path("--out", "Folder of bench.csv and the figure.  [default: results/NAME-OF-CONFIG]")
+@options.no_code
 def bench_command(
     config_path: Path,
     seeds: int,
     workers: int | None,
     overrides: tuple[str, ...],
     out: Path | None,
+    may_run: bool,
 ) -> None:
     """Measure the run time of each method against its error.
 
@@ -54,7 +57,8 @@ def bench_command(
     processor's, tracing apart. Writes bench.csv, bench.png and bench.svg. The same command
     continues what was interrupted, or adds seeds. Exits with 1 if a run failed.
     """
-    config = load_config(config_path, overrides)
+    config = load_config(config_path, overrides, may_run=may_run)
+    tell_files(config)
     out = Path("results", config_path.stem) if out is None else out
     options.folder(out, "--out")
     announce_compilation()

@@ -7,13 +7,13 @@ from pathlib import Path
 import click
 
 from simmpp.commands.parts import options
+from simmpp.commands.parts.inputs import config_of
 from simmpp.commands.parts.tables import texts
 from simmpp.commands.parts.terminal import go_on, say, wrote
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import refuse_special, write_text
 from simmpp.common.units import counted
 from simmpp.common.yamlfile import read_yaml
-from simmpp.config.config import load_config
 from simmpp.machine.constants import Constants
 from simmpp.machine.layers import Layers
 from simmpp.machine.listing import lines_of
@@ -41,8 +41,13 @@ _FREE = f"a choice, not a constant; {LINKS}: each link and port serves one messa
 @click.argument("table", required=False)
 @options.path("--out", "With fit: the file to write, to be named by the key machine.file.")
 @click.option("--based-on", help=f"With fit: preset of all other constants.  [{FITTED_ON}]")
+@options.no_code
 def machine_command(
-    preset: str | None, table: str | None, out: Path | None, based_on: str | None
+    preset: str | None,
+    table: str | None,
+    out: Path | None,
+    based_on: str | None,
+    may_run: bool,
 ) -> None:
     """Print every constant of a machine with its source.
 
@@ -65,7 +70,7 @@ def machine_command(
     elif preset == FIT:
         _fit(table, out, FITTED_ON if based_on is None else based_on)
     elif preset.endswith(SUFFIXES):
-        _print_file(preset)
+        _print_file(preset, may_run)
     else:
         _print_preset(preset)
 
@@ -77,7 +82,7 @@ def _print_preset(name: str) -> None:
     say(texts(("constant", "value", "source"), [*rows, ("contention", NO_CONTENTION, _FREE)]))
 
 
-def _print_file(name: str) -> None:
+def _print_file(name: str, may_run: bool) -> None:
     """A machine of one's own, or that of a configuration."""
     data = read_yaml(Path(name)).data
     if isinstance(data, dict) and "constants" in data:
@@ -85,7 +90,7 @@ def _print_file(name: str) -> None:
         say(f"{own.name}, based on {own.based_on}: {own.description}\n")
         _print_layers(layered(own.based_on, Constants(), own=own), NO_CONTENTION)
         return
-    config = load_config(Path(name))
+    config = config_of(name, (), may_run=may_run)
     machine = config.machine_for(config.processors)
     say(f"{machine.name}: {counted(machine.processors, 'PE')} ({topology_of(machine)})\n")
     _print_layers(config.layers, machine.contention)
@@ -109,7 +114,7 @@ def _fit(table: str | None, out: Path | None, base: str) -> None:
     if out is not None and out.suffix not in SUFFIXES:
         raise ConfigError(f"--out: value {str(out)!r}: expected a file .yaml")
     refuse_special(table)
-    text = Path(table).read_text(encoding="utf-8", errors="replace")
+    text = Path(table).read_text(encoding="utf-8-sig", errors="replace")
     found = fit(read_table(text, table), table)
     say(texts(("constant", "value", "range", "which is"), rows_of(found), whole=3))
     say(f"\ntimes lie {found.scatter:.1%} beside the fit (one standard deviation)")

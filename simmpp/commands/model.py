@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from simmpp.commands.parts import options, short_cuts
+from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.tables import table
 from simmpp.commands.parts.terminal import at_work, notice, say, wrote
 from simmpp.commands.parts.tracing import workload as workload_of
@@ -59,12 +60,14 @@ from simmpp.workload.workload import Workload
     help="Amplitude of zeta for the numbers; the figure has maps without and with.",
 )
 @options.path("--out", "Folder for figure2.csv and figure2.")
+@options.no_code
 def model_command(
     config_path: Path,
     overrides: tuple[str, ...],
     ratio_texts: tuple[str, ...],
     imbalance: float,
     out: Path | None,
+    may_run: bool,
 ) -> None:
     """Say which dataflow the paper's analytical model expects to win.
 
@@ -74,7 +77,8 @@ def model_command(
     --out writes figure2.csv, and figure2.png and .svg: the winner over nb and x for several cost
     ratios, and the border.
     """
-    config = load_config(config_path, overrides)
+    config = load_config(config_path, overrides, may_run=may_run)
+    tell_files(config)
     options.claim(out, "--out", MODEL)
     ratios = _ratios(ratio_texts)
     grid = model_grid(config)

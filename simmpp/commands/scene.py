@@ -38,12 +38,14 @@ MATERIALS_SHOWN, LIGHTS_SHOWN, CAMERAS_SHOWN = 20, 10, 10
 @options.path("--nff", "Write the scene as NFF.")
 @options.path("--preview", "Write a picture of it as PNG.")
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
+@options.no_code
 def scene_command(
     spec: str,
     overrides: tuple[str, ...],
     nff: Path | None,
     preview: Path | None,
     all_objects: bool,
+    may_run: bool,
 ) -> None:
     """List the objects and materials of a scene.
 
@@ -53,7 +55,7 @@ def scene_command(
     """
     options.writable(nff, "--nff", ".nff")
     options.writable(preview, "--preview", ".png")
-    config = config_of(spec, overrides)
+    config = config_of(spec, overrides, may_run=may_run)
     with at_work(f"reading {spec}"):
         scene = scene_of(config.ray_source, "scene")()
     _list(scene, None if all_objects else OBJECTS_SHOWN)

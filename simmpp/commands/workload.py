@@ -35,8 +35,13 @@ DEPTHS_SHOWN = 12
     "Set a dotted key of the configuration, such as picture.resolution=128; repeatable."
 )
 @click.option("--objects", "all_objects", is_flag=True, help="List every object, however many.")
+@options.no_code
 def workload_command(
-    spec: str, export: Path | None, overrides: tuple[str, ...], all_objects: bool
+    spec: str,
+    export: Path | None,
+    overrides: tuple[str, ...],
+    all_objects: bool,
+    may_run: bool,
 ) -> None:
     """List the rays of a picture, and which objects they need.
 
@@ -48,7 +53,7 @@ def workload_command(
     if export and not is_workload(export.name):
         expected = f"expected a file {' or '.join(WORKLOAD_SUFFIXES)}"
         raise ConfigError(f"--export: value {str(export)!r}: {expected}")
-    rays = workload(config_of(spec, overrides))
+    rays = workload(config_of(spec, overrides, may_run=may_run))
     if export:
         with at_work(f"writing {export}"):
             export_workload(rays, export)

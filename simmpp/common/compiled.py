@@ -121,11 +121,14 @@ def kernel(function: Function) -> Function:
     return cast(Function, _Kernel(function, targetoptions=OPTIONS | without))
 
 
-def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
-    """Compile a function of that numba signature which compiled code calls by its address."""
+def cfunc(signature: object, key: str) -> Callable[[Callable[..., object]], object]:
+    """Compile a function of that numba signature which compiled code calls by its address.
+
+    ``key`` tells apart what its module's source does not: the values that it takes from around it.
+    """
 
     def compile_now(function: Callable[..., object]) -> object:
-        with _kept_for(function) as kept, Uninterrupted():
+        with _kept_for(function, key) as kept, Uninterrupted():
             try:
                 return numba.cfunc(signature, cache=kept, boundscheck=True)(function)
             except OSError as error:
@@ -136,7 +139,7 @@ def cfunc(signature: object) -> Callable[[Callable[..., object]], object]:
 
 
 @contextmanager
-def _kept_for(function: Callable[..., object]) -> Iterator[bool]:
+def _kept_for(function: Callable[..., object], key: str = "") -> Iterator[bool]:
     """Tell numba where to keep what is decorated here; False if nothing can be kept.
 
     Left alone, numba would then keep it beside the source, under no digest. Other packages'
@@ -146,7 +149,7 @@ def _kept_for(function: Callable[..., object]) -> Iterator[bool]:
     before = numba.config.CACHE_DIR
     kept = _file(function.__module__) is not None
     if kept:
-        folder = _folder(function.__module__)
+        folder = _folder(function.__module__) / key
         numba.config.CACHE_DIR = str(folder)
         kept = _is_writable(folder)
     try:

@@ -37,6 +37,10 @@ def nothing(v: View) -> int:
     return 0
 
 
+OURS = "<numba.core.", "ctypes callback"
+"""What Python says where a compiled or a plain hook raised, and not something else's finaliser."""
+
+
 @contextmanager
 def told_of_hooks(policy: PolicyParameters, state: State) -> Iterator[None]:
     """While a run is on, note what its hooks raise.
@@ -62,7 +66,7 @@ def told_of_hooks(policy: PolicyParameters, state: State) -> Iterator[None]:
 def _note(unraisable: Any) -> None:
     """Python calls this for an exception that nothing can catch."""
     run = _runs.get(threading.get_ident())
-    if run is None:
+    if run is None or not any(text in f"{unraisable.object} {unraisable.err_msg}" for text in OURS):
         (_others[-1] if _others else sys.__unraisablehook__)(unraisable)
         return
     state, raised = run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 
 from simmpp.common.units import format_bytes_per_s, format_ps
@@ -44,6 +45,11 @@ def _span(of: Fitted, write: Callable[[float], str]) -> str:
     return f"{write(of.low)} to {write(of.high)}"
 
 
+def _quoted(text: str) -> str:
+    """As YAML reads it again, whatever is in it: names of tables are users' own."""
+    return json.dumps(text, ensure_ascii=False)
+
+
 def text_of(fit: Fit, table: str, base: str) -> str:
     """The YAML of a crossbar with these constants, the rest those of a preset.
 
@@ -52,7 +58,7 @@ def text_of(fit: Fit, table: str, base: str) -> str:
     found = {name: (value, span, what) for name, value, span, what in rows_of(fit)}
     lines = [
         f"# Written by simmpp machine fit {table}",
-        f"description: Fitted to {table}",
+        f"description: {_quoted(f'Fitted to {table}')}",
         f"based_on: {base}",
         "constants:",
     ]
@@ -61,7 +67,7 @@ def text_of(fit: Fit, table: str, base: str) -> str:
         value, span, what = found[name]
         estimate = what == ASSUMED
         source = f"ESTIMATE, range {span}" if estimate else f"{table}, {INTERVAL} {span}"
-        lines.append(f'  {key}: {{value: {value}, source: "{source}"}}')
+        lines.append(f"  {key}: {{value: {value}, source: {_quoted(source)}}}")
 
     for key in ("send_startup", "receive_startup"):
         put(key, key)
@@ -76,5 +82,6 @@ def text_of(fit: Fit, table: str, base: str) -> str:
         put(key, "bandwidth")
     if fit.gap_s is not None:
         put("port_gap", "port_gap")
+    lines.append(f'  header_bytes: {{value: 0, source: "{_WITHIN}"}}')
     lines.append("  levels: {network: {}}  # a crossbar")
     return "\n".join(lines) + "\n"

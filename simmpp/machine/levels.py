@@ -66,7 +66,8 @@ class Blocks:
     @property
     def block_sizes(self) -> list[int]:
         """PEs in a block of each level; the outermost has all."""
-        return [*accumulate((level.size for level in self.levels[:-1]), int.__mul__), self.pe_count]
+        sizes = accumulate((level.size for level in self.levels[:-1]), int.__mul__)
+        return [*(min(size, self.pe_count) for size in sizes), self.pe_count]
 
     @property
     def n_blocks(self) -> list[int]:

@@ -165,9 +165,10 @@ def layered(
     for layer in (load_preset(preset), costs, own):
         if layer is not None:
             layers.put(layer.constants, layer.source)
+    if own is not None:
+        layers.refuse_strangers(own.constants)
     layers.put(overrides, lambda key: OVERRIDDEN)
-    for constants in (*([own.constants] if own else []), overrides):
-        layers.refuse_strangers(constants)
+    layers.refuse_strangers(overrides)
     return layers
 
 

@@ -42,7 +42,8 @@ def most_using(by_pe: UsesByPE, n_objects: int, processors: int) -> NDArray[np.i
 
     The greatest use is served first; of equal ones the lower object, then the lower PE. What no PE
     uses fills up those that have room. Every PE gets floor(N / nb) or ceil(N / nb) objects.
-    Source: data live where they are needed most, as in the path tracing of Jaros et al.
+    Source: data live where they are needed most, as in Jaros et al., GPU Accelerated
+    Path Tracing of Massive Scenes, ACM TOG 40(2), 2021.
     """
     owner_of = np.full(n_objects, -1, np.int32)
     room = np.full(processors, n_objects // processors)

@@ -26,7 +26,7 @@ from simmpp.common.files import refuse_special, write_text
 from simmpp.common.units import shown
 from simmpp.policy.endless import counted
 from simmpp.policy.mistakes import line_in, note_copy, refuse_unknown_fields
-from simmpp.policy.policy import Policy
+from simmpp.policy.policy import Hook, Policy
 from simmpp.policy.reads import functions_of, globals_of
 
 OBJECT = "POLICY"
@@ -78,24 +78,47 @@ def policy_of_file(file: PolicyFile) -> Policy:
 
 def digest_of(policy: Policy, text: str | None = None) -> str:
     """Hexadecimal hash of what decides what a policy does; ``text`` is that of its file."""
-    parts = [text or "", *sorted(set(_of_elsewhere(policy, text is not None)))]
+    home = "" if text is None else _module_of(text)
+    parts = [text or "", *sorted(set(_of_elsewhere(policy, home)))]
     if text is None:  # which says these
         said = {k: v for k, v in vars(policy).items() if not callable(v)}
         parts.append(repr(sorted(said.items())))
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def _of_elsewhere(policy: Policy, has_file: bool) -> Iterator[str]:
+def _of_elsewhere(policy: Policy, home: str) -> Iterator[str]:
     """What hooks take from around them, and what is not in the policy's file."""
     for what, hook in policy.hooks.items():
-        for function in functions_of(hook):
-            if not has_file or function.__module__ != getattr(hook, "__module__", ""):
-                yield f"{what} {_source_of(function)}"
-            for name, value in globals_of(function):
-                if isinstance(value, np.ndarray):
-                    yield f"{name} {value.dtype} {value.shape} {value.tobytes().hex()}"
-                elif isinstance(value, int | float | str | bytes | tuple | frozenset | np.generic):
-                    yield f"{name} {value!r}"
+        yield from (f"{what} {said}" for said in _around(hook, home))
+
+
+def key_of(hook: Hook) -> str:
+    """Hexadecimal hash of the functions and constants that a hook is made of: compiled code has
+    them in it."""
+    return hashlib.sha256("\0".join(sorted(set(_around(hook, "")))).encode()).hexdigest()[:16]
+
+
+def _around(hook: Hook, home: str) -> Iterator[str]:
+    for function in functions_of(hook):
+        if function.__module__ != home:
+            yield _source_of(function)
+        for name, value in globals_of(function):
+            if isinstance(value, int | float | str | bytes | tuple | np.generic | np.ndarray):
+                yield f"{name} {_said(value)}"
+
+
+def _said(value: Any) -> str:
+    """A constant in full, without addresses."""
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype} {value.shape} {value.tobytes().hex()}"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_said, value))})"
+    return repr(value) if isinstance(value, int | float | str | bytes | np.generic) else ""
+
+
+def _module_of(text: str) -> str:
+    """The name under which a file of that text is imported."""
+    return f"simmpp_policy_{hashlib.sha256(text.encode()).hexdigest()[:32]}"
 
 
 def _source_of(function: Any) -> str:
@@ -122,7 +145,7 @@ def _policy_in(text: str, where: str) -> Policy:
         raise ConfigError(error.msg, where=where, line=error.lineno) from None
     except ConfigError as error:
         raise ConfigError(str(error), where=where, line=line_in(name, error)) from None
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
         raise ConfigError(problem, where=where, line=line_in(name, error)) from None
     policy = getattr(module, OBJECT, None)

@@ -8,6 +8,7 @@ from typing import Any
 from numba import types
 
 from simmpp.common.compiled import cfunc
+from simmpp.policy.file import key_of
 from simmpp.policy.mistakes import not_compiled
 from simmpp.policy.policy import Hook
 from simmpp.policy.record import record_with
@@ -23,7 +24,7 @@ def address_of(hook: Hook | None, parameters: tuple[str, ...] = ()) -> int:
     if hook is None:
         return 0
     try:
-        compiled: Any = cfunc(types.int64(record_with(parameters)))(hook)
+        compiled: Any = cfunc(types.int64(record_with(parameters)), key_of(hook))(hook)
     except Exception as error:  # numba's own, and what it trips over
         raise not_compiled(error, hook) from None
     return int(compiled.address)

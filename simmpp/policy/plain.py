@@ -25,7 +25,7 @@ class PlainHooks:
 
     def __init__(self) -> None:
         self._kept: list[Any] = []
-        self.answered_bool: set[str] = set()
+        self.answered_bool: set[Hook] = set()
         """Names of hooks that said true or false where others count."""
 
     def address_of(self, hook: Hook | None, parameters: tuple[str, ...] = ()) -> int:
@@ -43,7 +43,7 @@ class PlainHooks:
         view = plain_view(record[0], parameters)
         answer = hook(view)
         if isinstance(answer, bool):
-            self.answered_bool.add(hook.__name__)
+            self.answered_bool.add(hook)
         record["memory"] = view.memory
         return int(answer)
 

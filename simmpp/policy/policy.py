@@ -8,6 +8,7 @@ to be compiled again. One that a policy does not have costs nothing.
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeVar, get_args
@@ -16,6 +17,8 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import shown
 from simmpp.policy.view import NUMBERS, WORDS, View
 
+NAME = re.compile(r"[^\W\d_][\w.+-]*")
+"""Names of policies stand in sentences, columns and names of files."""
 Hook = Callable[[View], int]
 """What it returns says the field of Policy that holds it."""
 Packing = Literal["none", "requests", "all"]
@@ -61,6 +64,9 @@ class Policy:
     """Every object is in the memory of every PE."""
 
     def __post_init__(self) -> None:
+        if not (isinstance(self.name, str) and NAME.fullmatch(self.name)):
+            expected = "expected a letter, then letters, digits and any of _ . + -"
+            raise ConfigError(f"policy: name: value {shown(self.name)}: {expected}")
         for what, function in self.hooks.items():
             _require_hook(f"policy {self.name!r}: {what}", function)
         _require_numbers(self.name, self.parameters)

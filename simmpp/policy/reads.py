@@ -6,6 +6,7 @@ calls are at least those that it reads.
 
 from __future__ import annotations
 
+import dis
 from collections.abc import Iterator
 from functools import cache
 from types import CodeType, FunctionType, ModuleType
@@ -68,14 +69,21 @@ def functions_of(hook: object) -> list[FunctionType]:
 
 def globals_of(function: FunctionType) -> Iterator[tuple[str, object]]:
     """What a function reads of its surroundings, by name: of modules, what it may read of them."""
+    cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
     for code in _codes(function.__code__):
-        cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
-        for name in (*code.co_names, *cells):
-            value = cells[name].cell_contents if name in cells else function.__globals__.get(name)
-            if isinstance(value, ModuleType):
-                members = ((name, getattr(value, name, None)) for name in code.co_names)
-                yield from ((name, member) for name, member in members if member is not None)
-            elif value is not None:
+        value: object = None
+        for step in dis.get_instructions(code):
+            name = str(step.argval)
+            if step.opname == "EXTENDED_ARG":
+                continue
+            if step.opname in ("LOAD_GLOBAL", "LOAD_DEREF"):
+                is_cell = name in cells and step.opname == "LOAD_DEREF"
+                value = cells[name].cell_contents if is_cell else function.__globals__.get(name)
+            elif step.opname in ("LOAD_ATTR", "LOAD_METHOD") and isinstance(value, ModuleType):
+                value = getattr(value, name, None)
+            else:
+                value = None
+            if value is not None and not isinstance(value, ModuleType):
                 yield name, value
 
 

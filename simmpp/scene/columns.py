@@ -49,7 +49,10 @@ _OF_SCENES: WeakKeyDictionary[Scene, Columns] = WeakKeyDictionary()
 
 
 def columns_of(scene: Scene) -> Columns:
-    """The columns of a scene that ``check_scene`` finds nothing wrong with, made once."""
+    """The columns of a scene that ``check_scene`` finds nothing wrong with.
+
+    Made once: who changes an object needs another scene.
+    """
     if scene not in _OF_SCENES:
         _OF_SCENES[scene] = columns(scene.objects)
     return _OF_SCENES[scene]

@@ -234,7 +234,7 @@ def _refuse_set(source: Source, swept: list[str]) -> None:
     given = {}
     for path, (where, _) in source.places.items():
         if where.startswith("--"):  # a short cut has no key in its name
-            given[where] = where.removeprefix(SET) if where.startswith(SET) else path[0]
+            given[where] = where.removeprefix(SET) if where.startswith(SET) else str(path[0])
     for where, key in given.items():
         for name in swept:
             if key == name or key.startswith(f"{name}."):

@@ -131,3 +131,16 @@ def test_fit_prints_and_writes_a_machine_that_runs() -> None:
         "ours: 4 PEs (network of 4)"
         in simmpp("run", "c.yaml", "--set", "machine.levels={network: {}}").stdout
     )
+
+
+def test_a_machine_of_ones_own_on_another_network() -> None:
+    """The file is of a torus; a configuration may put its nodes on levels all the same."""
+    constants = "constants:\n  hop_latency: {value: 70 ns, source: measured}\n"
+    Path("own.yaml").write_text(f"description: o\nbased_on: t3e\n{constants}")
+    levels = "levels: {node: {size: 4, ports: 1}, system: {ports: 1}}"
+    Path("c.yaml").write_text(
+        f"scene: tetra:3\nprocessors: 8\nmachine: {{file: own.yaml, {levels}}}\n"
+    )
+    done = simmpp("machine", "c.yaml")
+    assert done.exit_code == 0, done.stderr
+    assert "levels.node.size" in done.stdout

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -98,10 +100,71 @@ def test_two_versions_of_a_file_are_two_policies() -> None:
     assert "digest" in checked.stderr
 
 
+READERS = (
+    *("run c.yaml", "sweep c.yaml", "check c.yaml --baseline b", "bench c.yaml"),
+    *("model c.yaml", "machine c.yaml", "scene c.yaml", "workload c.yaml"),
+)
+"""Every command that reads a configuration."""
+
+
+@pytest.mark.parametrize("command", [of for of in READERS if of.startswith(("ma", "sc", "wo"))])
+def test_who_only_looks_says_what_it_executes(command: str) -> None:
+    assert "policy: runs mine.py" in simmpp(*command.split()).stderr
+
+
+def test_a_reading_is_no_code() -> None:
+    Path("evil.py").write_text("open('ran', 'w')")
+    Path("r.yaml").write_text("description: r\nbased_on: mixed\npolicy: {ray: {file: evil.py}}\n")
+    said = refused("run", "c.yaml", "--set", "reading=r.yaml")
+    assert "policy.ray.file: no reading sets this" in said or "file" in said
+    assert not Path("ran").exists()
+
+
+LIMIT = """\
+import os
+from simmpp.policy import Policy, hook
+
+LIMIT = int(os.environ["LIMIT"])
+
+
+@hook
+def send(v):
+    return v.waiting if v.load > LIMIT else 0
+
+
+@hook
+def ask(v):
+    return 1
+
+
+POLICY = Policy("limit", send=send, ask=ask)
+"""
+
+
+def test_what_a_hook_takes_from_around_it_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One text, two values: neither compiled code nor rows of one are taken for the other's."""
+    Path("mine.py").write_text(LIMIT)
+    Path("c.yaml").write_text(CONFIG.replace(", set: {part: 3}", ""))
+    found = {}
+    for limit in ("1", "1000000", "1"):
+        monkeypatch.setenv("LIMIT", limit)
+        done = subprocess.run(
+            [sys.executable, "-m", "simmpp", "run", "c.yaml", "--out", f"o{limit}"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        row = rows(f"o{limit}")["mine"]
+        assert found.setdefault(limit, row) == row
+    assert int(found["1"]["rays_sent"]) > 0
+    assert int(found["1000000"]["rays_sent"]) == 0
+
+
 def test_code_is_refused_where_it_is_not_wanted() -> None:
     Path("mine.py").write_text("open('ran', 'w')")
-    for command in (["run", "c.yaml"], ["sweep", "c.yaml"], ["check", "c.yaml", "--baseline", "b"]):
-        said = refused(*command, "--no-code")
+    for command in READERS:
+        said = refused(*command.split(), "--no-code")
         assert said == (
             "c.yaml:5: policy[1].file: value 'mine.py': expected none: with --no-code no file "
             "is run"
@@ -126,6 +189,8 @@ MISTAKES = [
     ("POLICY =", "policy =", "mine.py: expected POLICY = Policy(...)"),
     ("batch=4", "batch='few'", "mine.py:16: policy 'half': batch: value 'few': expected a count"),
     ("import", "imports", "mine.py:1: invalid syntax"),
+    ("POLICY =", "raise SystemExit(0)\nPOLICY =", "mine.py:16: SystemExit: 0"),
+    ('"half"', '"a/b"', "mine.py:16: policy: name: value 'a/b': expected a letter, then letters"),
     ("def ask(v):\n", "def ask(v):\n    import nix\n", "mine.py:13: ask can't be compiled"),
 ]
 

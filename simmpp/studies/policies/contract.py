@@ -50,8 +50,9 @@ def findings(policy: PolicyParameters, tick: Callable[[], None]) -> Iterator[Fin
     cases = [random_case(policy, seed) for seed in range(MACHINES)]
     plain = PlainHooks()
     yield from _same_on_all(cases, plain, tick)
-    if counted := sorted(plain.answered_bool & {getattr(policy.rules.send, "__name__", "")}):
-        text = f"{counted[0]} says true or false, which is 1 or 0 rays; v.waiting is all of them"
+    if (send := policy.rules.send) in plain.answered_bool:
+        name = getattr(send, "__name__", "send")
+        text = f"{name} says true or false, which is 1 or 0 rays; v.waiting is all of them"
         yield Finding("how many", False, text)
     yield _same_picture(policy)
     for what, hook in policy.rules.hooks.items():

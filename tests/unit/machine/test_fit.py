@@ -98,6 +98,15 @@ def test_the_file_that_is_written_is_a_machine_with_these_constants(tmp_path: Pa
     assert one_way_ps == pytest.approx(found.start_s.value * 1e12, rel=1e-4)
     assert made.sources["latency"].startswith("ESTIMATE, range ")
     assert made.sources["link_bandwidth"].startswith("t.csv, 95 % confidence ")
+    assert made.header_bytes == 0  # what it costs is in what was measured
+
+
+def test_any_name_of_a_table_is_text_in_the_file(tmp_path: Path) -> None:
+    name = 'run #2: "a".csv'
+    (tmp_path / "ours.yaml").write_text(text_of(fitted(measured(4)), name, "t3e"))
+    own = load_own("ours.yaml", tmp_path)
+    assert own.description == f"Fitted to {name}"
+    assert machine(own.based_on, {}, 4, own=own).sources["link_bandwidth"].startswith(name)
 
 
 HEAD = "bytes,one_way_us\n"

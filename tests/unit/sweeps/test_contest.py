@@ -9,6 +9,7 @@ import pytest
 from sweep_rows import failed, row, timed
 
 from simmpp.common.files import Row
+from simmpp.sweeps.intervals import PLAIN
 from simmpp.sweeps.winners.contest import (
     ALONE,
     EQUAL,
@@ -85,8 +86,8 @@ def test_where_everyone_holds_everything_all_are_dataflows() -> None:
 
 
 def test_intervals_are_as_wide_as_where_seeds_were_chosen() -> None:
-    rows = timed("object", 100, 100, 100, 100) + timed("ray", 109, 101, 105, 103)
-    plain, wide = (contests_of(points_of(rows, (), confidence=c))[0] for c in (0.975, 0.9995))
+    rows = timed("object", 100, 100, 100, 100) + timed("ray", 106, 103, 105, 104)
+    plain, wide = (contests_of(points_of(rows, (), confidence=c))[0] for c in (PLAIN, 0.9999))
     assert (plain.certainty, wide.certainty) == (SURE, UNSURE)
     assert wide.low < 1 < plain.low
 
