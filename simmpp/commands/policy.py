@@ -36,7 +36,7 @@ def policy_command() -> None:
     """Write a policy of your own, and check it.
 
     A policy is a Python file with a few hooks. A configuration names it: `policy: [object, {file:
-    mine.py}]`. It is code: run, sweep and check run it unless they get --no-code.
+    mine.py}]`. It is code, which who reads the configuration runs, unless with --no-code.
     """
 
 
