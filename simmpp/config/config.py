@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from os.path import exists
@@ -143,8 +144,9 @@ def load_config(
         hint = f"expected a configuration (YAML); `simmpp workload {path}` lists these rays"
         raise ConfigError(hint, where=str(path))
     if not exists(path) and Path(path).suffix in (".yaml", ".yml"):
+        name = shlex.quote(str(path))
         raise ConfigError(
-            f"there is no such file; `simmpp init {path}` writes one", where=str(path)
+            f"there is no such file; `simmpp init {name}` writes one", where=str(path)
         )
     document = read_yaml(Path(path))
     where = document.where

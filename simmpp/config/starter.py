@@ -29,9 +29,10 @@ LEFT_OUT = ("scene.", "policy.name", "policy.file", "policy.set")
 """Ways to say a scene that are not the text, and what goes with files of one's own."""
 WIDTH = 92
 HEAD = """\
-# A configuration of simmpp. Lines such as "#seeds: [0]" say what holds without them: take the #
-# away (and that of the line it is indented below) to say something else. `simmpp keys KEY` tells
-# about one key, `simmpp machine t3e` lists what a machine costs, each a key below "machine".
+# A configuration of simmpp. Lines such as "#seeds: [0]" say what holds without them, or, where
+# nothing does, an example: take the # away (and that of the line it is indented below) to say
+# something else. `simmpp keys KEY` tells about one key, `simmpp machine t3e` lists what a machine
+# costs, each a key below "machine".
 #
 #   simmpp run FILE      compares the policies
 #   simmpp sweep FILE    compares them at all values under the key "sweep"

@@ -97,7 +97,7 @@ def test_no_interrupt_is_lost_in_a_compiler(after_s: float) -> None:
     with pytest.raises(KeyboardInterrupt):
         interrupted_in(after_s)
         compiled(8)
-        cfunc("float64(int64)")(summed)
+        cfunc("float64(int64)", "summed")(summed)
         wait()
     assert compiled(8) == 21
 
