@@ -114,9 +114,11 @@ def test_who_only_looks_says_what_it_executes(command: str) -> None:
 
 def test_a_reading_is_no_code() -> None:
     Path("evil.py").write_text("open('ran', 'w')")
-    Path("r.yaml").write_text("description: r\nbased_on: mixed\npolicy: {ray: {file: evil.py}}\n")
-    said = refused("run", "c.yaml", "--set", "reading=r.yaml")
-    assert "policy.ray.file: no reading sets this" in said or "file" in said
+    named = "{value: evil.py, source: s}"
+    text = f"description: r\nbased_on: mixed\npolicy:\n  ray:\n    file: {named}\n"
+    Path("r.yaml").write_text(text)
+    said = refused("run", "c.yaml", "--set", "reading=r.yaml", "--no-code", "--set", "policy=ray")
+    assert said == "r.yaml:5: policy.ray.file: expected none: readings do not set it"
     assert not Path("ran").exists()
 
 
