@@ -34,6 +34,9 @@ PE = np.dtype(
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
         ("draws", "i8"),  # random numbers that its policy was given
+        ("finished", "i8"),  # rays that ended here
+        ("fetched", "i8"),  # objects that have come on request
+        ("released", "i8"),  # rays that these made ready
     ],
     align=True,
 )
