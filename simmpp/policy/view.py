@@ -87,6 +87,8 @@ class View:
     """Rays that this PE has finished."""
     busy_ps: int
     """Time that it has worked; of an activity that is not over, the work before its dispatch."""
+    compute_ps: int
+    """Of this, time in tests and rays, and not in messages."""
     fetched: int
     """Objects that have come because it had asked for them."""
     released: int
@@ -113,7 +115,7 @@ GROUPS = {
     WAY: ("hops", "send_ps", "receive_ps", "flight_ps"),
     OBJECT: ("object", "object_bytes", "test_ps", "owner", "holders", "requests"),
     RANDOM: ("random",),
-    DONE: ("finished", "busy_ps", "fetched", "released"),
+    DONE: ("finished", "busy_ps", "compute_ps", "fetched", "released"),
     WANTED: ("objects", "fetch_ps", "fetch_flight_ps"),
 }
 """Fields that are looked up together, if a hook reads any of them; the others always are there."""

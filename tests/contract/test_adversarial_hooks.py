@@ -50,7 +50,7 @@ def by_all_that_it_sees(v: View) -> int:
     v.memory[2] = v.now_ps
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.held_bytes
     seen = v.me + v.nb + v.ready + v.other + v.in_flight + v.initial_load + v.memory[1]
-    done = v.finished + v.busy_ps + v.fetched - v.released
+    done = v.finished + v.busy_ps - v.compute_ps * 2 + v.fetched - v.released
     costs += v.fetch_ps * v.objects - v.fetch_flight_ps + done
     nothing = v.object + v.owner + v.object_bytes + v.test_ps + v.holders + v.requests + v.unasked
     return (costs + seen + v.parameter[1] * v.greed) % (v.waiting + 2) if nothing == -2 else 0

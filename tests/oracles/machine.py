@@ -57,7 +57,7 @@ class Simulation(Dispatch):
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
         self.sample_loads(time)
-        pe.ended_load, pe.busy = pe.load, pe.paid
+        pe.ended_load, pe.worked = pe.load, pe.paid.copy()
         pe.refresh_allowed = True
         if pe.inbox:
             message = pe.inbox.popleft()
@@ -188,7 +188,7 @@ class Simulation(Dispatch):
     def dispatch(self, time: int, pe: PE) -> None:
         """The work is done: send, and begin anew."""
         self.sample_loads(time)
-        messages_before, pe.busy = len(self.ledger.sent), pe.paid
+        messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
         self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:

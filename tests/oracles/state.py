@@ -90,9 +90,9 @@ class PE:
     """For the policy."""
     draws: int = 0
     """Random numbers that the policy was given."""
-    paid: int = 0
-    """Time that all its work has taken."""
-    busy: int = 0
+    paid: Counter[str] = field(default_factory=Counter)
+    """Account: time that all its work has taken."""
+    worked: Counter[str] = field(default_factory=Counter)
     """The same when the latest activity or its dispatch began."""
     finished: int = 0
     """Rays that ended here."""

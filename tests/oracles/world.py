@@ -81,7 +81,7 @@ class World:
 
     def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
         """Charge a PE; returns the time when it has paid."""
-        pe.paid += cost
+        pe.paid[account] += cost
         return self.ledger.pay(account, pe.number, clock, cost)
 
     def send(self, clock: int, pe: PE, destination: int, parts: Sequence[Part]) -> int:

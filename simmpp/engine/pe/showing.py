@@ -97,7 +97,7 @@ def _show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
         view.ready, view.held_bytes = pe.n_ready, pe.held_bytes
     if groups & DONE:
         view.finished, view.fetched, view.released = pe.finished, pe.fetched, pe.released
-        view.busy_ps = pe.compute_ps + pe.communication_ps
+        view.busy_ps, view.compute_ps = pe.compute_ps + pe.communication_ps, pe.compute_ps
     if groups & RANDOM:
         pe.draws += 1
         view.random = philox(s.random_key, me, pe.draws)
