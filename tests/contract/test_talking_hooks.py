@@ -34,7 +34,9 @@ def by_all_that_it_hears(v: View) -> int:
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.hops + v.age_ps + v.held_bytes
     seen = v.other + v.me + v.load + v.ready + v.waiting + v.known_load + v.in_flight + v.unasked
     nothing = v.object + v.owner + v.object_bytes + v.test_ps + v.holders + v.requests
-    said = v.words[0] + 3 * v.words[1] + 5 * v.words[2] + 7 * v.words[3]
+    done = v.finished + v.busy_ps + v.compute_ps + v.fetched + v.released
+    done += v.objects + v.fetch_ps + v.fetch_flight_ps
+    said = done + v.words[0] + 3 * v.words[1] + 5 * v.words[2] + 7 * v.words[3]
     v.memory[0] = (v.memory[0] * 31 + costs + seen + nothing + said + v.now_ps) % 1000003
     v.words[1], v.words[3] = v.memory[0], v.random % 100
     v.other = v.nb + 5  # of no consequence: answers go to who asked
@@ -67,6 +69,8 @@ def by_all_that_it_knows(v: View) -> int:
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.hops + v.held_bytes + v.now_ps
     seen = v.me + v.load + v.ready + v.waiting + v.known_load + v.age_ps + v.in_flight + v.unasked
     nothing = v.object + v.owner + v.object_bytes + v.test_ps + v.holders + v.requests + v.other
+    nothing += v.finished + v.busy_ps + v.compute_ps + v.fetched + v.released
+    nothing += v.objects + v.fetch_ps + v.fetch_flight_ps
     nothing += v.words[0] + v.words[3] + v.nothing_else
     v.memory[1] = (v.memory[1] * 31 + costs + seen + nothing + v.random) % 1000003
     v.other = v.memory[1] % (v.nb + 2) - 1

@@ -103,6 +103,7 @@ class Talking(Dispatch):
         view.waiting, view.unasked = len(pe.waiting), 0
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
+        view.objects = view.fetch_ps = view.fetch_flight_ps = 0
         view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], USER_BYTES)
         view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[REQUEST], USER_BYTES)
         if other is None:

@@ -122,6 +122,7 @@ def _show(s: Run, view: View, me: int, other: int, now_ps: int, reads: int) -> N
     if reads == 0:
         return
     show_nothing(view)
+    view.objects = view.fetch_ps = view.fetch_flight_ps = 0
     if reads & LOADS:
         view.known_load, view.age_ps, view.in_flight = NONE, now_ps, 0
         if other != NONE:
