@@ -235,6 +235,8 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
             bytes_per_s=int(_pick(rng, rates)),
             gap_ps=int(_pick(rng, times)),
             ports=int(rng.integers(1, 4)) if n > 0 else 1,
+            send_startup_ps=int(_pick(rng, times)),
+            receive_startup_ps=int(_pick(rng, times)),
         )
         for n in (*inside, len(inside))
     )

@@ -63,6 +63,8 @@ class Layers:
                 self.numbers["link_bandwidth"], self.numbers["injection_bandwidth"]
             ),
             "gap": self.numbers["port_gap"],
+            "send_startup": self.numbers["send_startup"],
+            "receive_startup": self.numbers["receive_startup"],
         }
         return tuple(self._level(name, of_machine) for name in self.level_names)
 
@@ -77,6 +79,8 @@ class Layers:
             bytes_per_s=said["bandwidth"],
             gap_ps=said["gap"],
             ports=said.get("ports", 1),
+            send_startup_ps=said["send_startup"],
+            receive_startup_ps=said["receive_startup"],
         )
 
 

@@ -63,6 +63,10 @@ class Level:
     ports: Annotated[int, *integer(1, MOST_PROCESSORS, "ports")] = 1
     """With contention: ways out, and in, of each block of the level below; its PE i has number i
     mod ports. A PE has one."""
+    send_startup_ps: Time = 0
+    """Sender's cost of such a message, the machine's when not given."""
+    receive_startup_ps: Time = 0
+    """Receiver's cost of such a message, the machine's when not given."""
 
 
 @documented
@@ -184,7 +188,9 @@ class Machine:
     @property
     def per_message_ps(self) -> int:
         """No message costs a PE more than this and its copy: ``limits`` counts on it."""
-        return self.send_startup_ps + self.receive_startup_ps + self.probe_ps
+        of_levels = (level.send_startup_ps + level.receive_startup_ps for level in self.levels)
+        startups_ps = max(self.send_startup_ps + self.receive_startup_ps, *of_levels, 0)
+        return startups_ps + self.probe_ps
 
     @property
     def processors(self) -> int:

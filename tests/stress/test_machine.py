@@ -40,6 +40,7 @@ def priced(machine: Machine, times: tuple[int, ...], test_ps: int, copy_ps: int)
     """Costs of these times, in the order of TIMES; bytes cost nothing."""
     copies, named = (CopyCost(copy_ps),) * 4, dict(zip(TIMES, times, strict=True))
     of_levels = {"latency_ps": named["latency_ps"], "gap_ps": named["probe_ps"], "bytes_per_s": 0}
+    of_levels |= {name: named[name] for name in TIMES[:2]}
     return replace(
         machine,
         **named,
