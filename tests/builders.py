@@ -242,6 +242,17 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
     )
 
 
+def with_costs_of_today(machine: Machine, seed: int) -> Machine:
+    """The machine, in some cases with parts that have a tree of their own.
+
+    Draws from a stream of its own, too.
+    """
+    rng = np.random.default_rng((seed, 19))
+    if rng.random() < 0.3:
+        machine = replace(machine, test=replace(machine.test, log2_ps=machine.latency_ps))
+    return machine
+
+
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
     """Any owners and pixels; a third of the cases have no replicas."""
     owners = rng.integers(0, processors, workload.n_objects).tolist()
@@ -295,7 +306,7 @@ def random_case(seed: int) -> Case:
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
-    machine = on_some_network(machine, seed)
+    machine = with_costs_of_today(on_some_network(machine, seed), seed)
     return Case(workload, machine, placement, random_policy(rng), order)
 
 

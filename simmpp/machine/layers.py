@@ -18,6 +18,8 @@ _BELONGS = {
     "fat_tree": (FAT_TREE,),
 }
 """Keys that mean something with these topologies only."""
+_TRIANGLES = ("test.log2", "test.per_triangle")
+"""Costs of triangles, of which one is 0."""
 
 
 @dataclass
@@ -45,9 +47,15 @@ class Layers:
         given = constants.flat()
         self.numbers |= given
         self.sources |= {key: source_of(key) for key in given}
+        for key, other in (_TRIANGLES, _TRIANGLES[::-1]):
+            if given.get(key) and not given.get(other):
+                self.numbers[other], self.sources[other] = 0, self.sources[key]
 
     def refuse_strangers(self, constants: Constants) -> None:
         """Raise ConfigError, with the key, for what a layer sets in vain."""
+        if all(constants.flat().get(key) for key in _TRIANGLES):
+            problem = f"it replaces {_TRIANGLES[1]}: expected one of them"
+            raise ConfigError(problem, where=_TRIANGLES[0])
         topology = self.words["topology"]
         for key, topologies in _BELONGS.items():
             if getattr(constants, key) is not None and topology not in topologies:

@@ -18,12 +18,12 @@ def copy_ps(cost: Any, payload_bytes: int) -> int:
 
 
 @kernel
-def sending_ps(s: Run, me: int, other: int) -> int:
-    """Startup of a message from ``me`` to another PE."""
+def sending_ps(s: Run, me: int, other: int, kind: int) -> int:
+    """Startup of a message from ``me`` to another PE, by the kind of its first part."""
     return send_startup_ps(topology(s), me, other, s.send_startup_ps)
 
 
 @kernel
-def receiving_ps(s: Run, me: int, other: int) -> int:
+def receiving_ps(s: Run, me: int, other: int, kind: int) -> int:
     """Startup of the receipt by ``me`` of a message from another PE."""
     return receive_startup_ps(topology(s), other, me, s.receive_startup_ps)

@@ -163,7 +163,7 @@ def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
     pe, m = pes(s)[me], messages(s)[row]
     m.source, m.load, m.number = me, pe.load, pe.messages_sent
-    m.depart_ps = now_ps + sending_ps(s, me, m.destination) + parts_ps(s, row, PACK)
+    m.depart_ps = now_ps + sending_ps(s, me, m.destination, m.kind) + parts_ps(s, row, PACK)
     depart(s, m)
     pe.messages_sent += 1
     sent_by_kind(s)[m.kind] += 1

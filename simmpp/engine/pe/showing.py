@@ -49,9 +49,10 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        view.send_ps = sending_ps(s, me, other) + copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
+        pack_ps = copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
         unpack_ps = copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
-        view.receive_ps = receiving_ps(s, other, me) + unpack_ps
+        view.send_ps = sending_ps(s, me, other, RAYS) + pack_ps
+        view.receive_ps = receiving_ps(s, other, me, RAYS) + unpack_ps
         view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
     _show_self(s, view, me, now_ps, s.send_reads)
 
@@ -82,12 +83,16 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
 def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
     """What a fetch costs the PE, and how long it takes besides."""
     costs, request_bytes = copy_costs(s), s.request_bytes
-    view.send_ps = sending_ps(s, me, owner) + copy_ps(costs[PACK + REQUEST], request_bytes)
-    view.receive_ps = receiving_ps(s, me, owner) + copy_ps(costs[UNPACK + OBJECT_MESSAGE], n_bytes)
+    view.send_ps = sending_ps(s, me, owner, REQUEST)
+    view.send_ps += copy_ps(costs[PACK + REQUEST], request_bytes)
+    view.receive_ps = receiving_ps(s, me, owner, OBJECT_MESSAGE)
+    view.receive_ps += copy_ps(costs[UNPACK + OBJECT_MESSAGE], n_bytes)
     there_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
     back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    answer_ps = receiving_ps(s, owner, me) + copy_ps(costs[UNPACK + REQUEST], request_bytes)
-    answer_ps += sending_ps(s, owner, me) + copy_ps(costs[PACK + OBJECT_MESSAGE], n_bytes)
+    answer_ps = receiving_ps(s, owner, me, REQUEST)
+    answer_ps += copy_ps(costs[UNPACK + REQUEST], request_bytes)
+    answer_ps += sending_ps(s, owner, me, OBJECT_MESSAGE)
+    answer_ps += copy_ps(costs[PACK + OBJECT_MESSAGE], n_bytes)
     view.flight_ps = there_ps + answer_ps + back_ps
 
 
