@@ -60,5 +60,6 @@ def _same(one: object, other: object) -> bool:
 
 def _processors(constants: Mapping[str, Any]) -> int | None:
     shape = constants.get("shape")
-    known = isinstance(shape, list | tuple) and all(isinstance(n, int) for n in shape)
-    return prod(shape) if known else None
+    if isinstance(shape, list | tuple) and all(isinstance(n, int) for n in shape):
+        return prod(shape)
+    return None
