@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.documented import documented
-from simmpp.common.quantities import Bandwidth, Size, Time
+from simmpp.common.quantities import Bandwidth, Power, Price, Size, Time
 from simmpp.common.strict import Expect, integer, one_of, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
@@ -193,6 +193,11 @@ class Machine:
     """With contention: a message keeps the ports of its PEs busy for that long at least."""
     contention: Literal["none", "links"] = "none"
     """What messages wait for: nothing, or links and ports that serve one at a time."""
+    power_mw: Power = field(default=0, compare=False)
+    """Electricity that a PE takes with its share of its node, for what runs cost; not known when
+    not given."""
+    price_micros: Price = field(default=0, compare=False)
+    """Of an hour of a PE likewise, in the one currency of all machines (the package's in USD)."""
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     """Where each constant comes from, by its dotted key; values without a document say ESTIMATE."""
 
