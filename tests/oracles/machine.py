@@ -13,7 +13,7 @@ from typing import Any
 
 from oracles.costs import copy_ps, intersection_ps
 from oracles.ledger import Outcome
-from oracles.network import distance
+from oracles.network import distance, startups_ps
 from oracles.state import PE, Message, Part
 from oracles.talking import Talking
 from simmpp.machine.machine import Machine
@@ -78,7 +78,7 @@ class Simulation(Talking):
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
-        cost = self.machine.receive_startup_ps
+        _, cost = startups_ps(self.machine, message.source, pe.number)
         unpack = (*self.machine.unpack, self.machine.unpack[REQUEST])
         cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)
