@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -27,8 +28,10 @@ from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking, starved
 
-EVENTS_PER_CALL = 1 << 20
-"""So that progress is shown and Ctrl-C is heard."""
+FIRST_EVENTS, MOST_EVENTS = 1 << 10, 1 << 20
+"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: twice as many each
+time, until that takes CALL_S; half as many if it takes twice as long, as hooks may be slow."""
+CALL_S = 0.1
 FINISHED, PAUSED, FULL, STARVED = range(4)
 
 
@@ -49,11 +52,15 @@ class CompiledRun:
 
         Raises ModelError if rays are left and nothing is scheduled.
         """
-        status = FINISHED if self.state["rays_left"] == 0 or self._needs_no_events() else PAUSED
+        n_events, status = FIRST_EVENTS, PAUSED
+        if self.state["rays_left"] == 0 or self._needs_no_events():
+            status = FINISHED
         while status in (PAUSED, FULL):
             self.state.ensure_room(self._next_ps())
             self.state.ensure_heap()
-            status = _run(self.state.runs, EVENTS_PER_CALL)
+            began_s = time.monotonic()
+            status = _run(self.state.runs, n_events)
+            n_events = _as_many(n_events, time.monotonic() - began_s)
             if self._progress is not None:
                 self._progress(self.state["rays_left"])
         if status == STARVED:
@@ -73,6 +80,13 @@ class CompiledRun:
         """The time of the next event."""
         events = self.state.arrays["heap"]
         return int(events[0]["time_ps"]) if len(events) else 0
+
+
+def _as_many(n_events: int, took_s: float) -> int:
+    """How many events are handled at the next call."""
+    if took_s < CALL_S:
+        return min(2 * n_events, MOST_EVENTS)
+    return max(n_events // 2, 1) if took_s > 2 * CALL_S else n_events
 
 
 @njit

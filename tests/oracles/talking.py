@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from oracles.costs import copy_ps
 from oracles.dispatch import Dispatch
-from oracles.network import distance, network_ps
+from oracles.network import distance, network_ps, startups_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST, USER
@@ -104,8 +104,11 @@ class Talking(Dispatch):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         view.objects = view.fetch_ps = view.fetch_flight_ps = 0
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], USER_BYTES)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[REQUEST], USER_BYTES)
+        startups = machine.send_startup_ps, machine.receive_startup_ps
+        if other is not None:
+            startups = startups_ps(machine, pe.number, other)
+        view.send_ps = startups[0] + copy_ps(machine.pack[REQUEST], USER_BYTES)
+        view.receive_ps = startups[1] + copy_ps(machine.unpack[REQUEST], USER_BYTES)
         if other is None:
             view.other = view.known_load = -1
             view.age_ps, view.in_flight, view.hops, view.flight_ps = pe.clock, 0, 0, 0
