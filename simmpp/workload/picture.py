@@ -5,14 +5,21 @@ from __future__ import annotations
 import dataclasses
 from typing import Annotated, Any, Literal
 
+from pydantic import model_validator
+
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import Expect, Switch, declared, integer, parsed_by
+from simmpp.common.strict import Expect, Switch, declared, integer, mistake, parsed_by
 from simmpp.common.units import shown
 from simmpp.common.validate import whole
 from simmpp.scene.scene import Scene
 
 MOST_PIXELS = 16384
 """Along each side."""
+PATH, CORNERS = "path", "corners"
+MOST_PATHS = 65536
+"""Of each pixel."""
+PATHS = 16
+"""Of each pixel, when not given."""
 OWN = "own"
 """The resolution that the scene itself asks for."""
 _RESOLUTION = f"an integer from 1 to {MOST_PIXELS}, [width, height], or {OWN}"
@@ -38,6 +45,27 @@ Resolution = Annotated[
 ]
 
 
+_COUNTED = f"a number of paths per pixel from 1 to {MOST_PATHS}"
+_SAMPLES = f"centres, corners, or {_COUNTED}"
+_NUMBER = {"type": "integer", "minimum": 1, "maximum": MOST_PATHS}
+
+
+def _samples(value: Any) -> Any:
+    if isinstance(value, str) and value in ("centres", CORNERS):
+        return value
+    try:
+        return whole(value, 1, MOST_PATHS)
+    except ConfigError:
+        raise ConfigError(f"value {shown(value)}: expected {_SAMPLES}") from None
+
+
+Samples = Annotated[
+    str | int,
+    parsed_by(_samples),
+    Expect(_SAMPLES, {"anyOf": [{"enum": ["centres", CORNERS]}, _NUMBER]}, "paths"),
+]
+
+
 @declared
 class Picture:
     """Settings of one picture.
@@ -50,10 +78,20 @@ class Picture:
     resolution: Resolution = 512
     """Pixels along each side of a square, or across and down; `own` takes what the scene asks for:
     NFF's line `resolution`, without one 512 x 512."""
-    samples: Literal["centres", "corners"] = "centres"
-    """A ray per pixel centre, or per corner (the SPD's rules)."""
+    render: Literal["whitted", "path"] = "whitted"
+    """Whitted's rays: every mirrored and refracted one, and shadow rays to all lights; or paths,
+    which go on from each hit with one ray drawn by chance, and one shadow ray."""
+    samples: Samples | None = None
+    """A ray per pixel centre (when not given), or per corner (the SPD's rules); of paths their
+    number per pixel, 16 when not given."""
     max_depth: Annotated[int, *integer(1, 100)] = 5
     """Depth of the deepest ray that is not a shadow ray; the eye ray has depth 1."""
+    depth: Annotated[int, *integer(1, 1000)] = 16
+    """Of paths: depth of the deepest ray; the eye ray has depth 1. No shadow ray is spawned there."""
+    roulette: Annotated[int, *integer(1, 1001)] = 4
+    """Of paths: depth from which chance may end one."""
+    seed: Annotated[int, *integer(0, 2**32 - 1)] = 0
+    """Of paths: what their chance is drawn from."""
     shadows: Switch = True
     """Trace shadow rays."""
     reflection: Switch = True
@@ -73,6 +111,36 @@ class Picture:
         except ConfigError as error:
             raise ConfigError(error.problem, where=scene.name) from None
 
+    @model_validator(mode="after")
+    def _goes_together(self) -> Picture:
+        is_path, others = (
+            self.render == PATH,
+            (self.max_depth, self.depth, self.roulette, self.seed),
+        )
+        if is_path and isinstance(self.samples, str):
+            raise mistake(f"samples: value {self.samples!r}: expected {_COUNTED}")
+        if not is_path and isinstance(self.samples, int):
+            raise mistake(f"samples: value {self.samples}: a number goes with render: path only")
+        defaults = (5, 16, 4, 0)
+        for k, name in enumerate(("max_depth", "depth", "roulette", "seed")):
+            if others[k] != defaults[k] and is_path == (k == 0):
+                with_what = "render: whitted, paths have depth" if is_path else "render: path"
+                raise mistake(f"{name} goes with {with_what}")
+        return self
+
+    @property
+    def passes(self) -> int:
+        """Primary rays of each pixel, each in a pass of its own over the picture."""
+        if self.render != PATH:
+            return 1
+        return self.samples if isinstance(self.samples, int) else PATHS
+
+    @property
+    def n_roots(self) -> int:
+        """Number of primary rays; ``of`` a scene."""
+        rows, columns = self.shape
+        return rows * columns * self.passes
+
     @property
     def pixels(self) -> tuple[int, int]:
         """Rows and columns of pixels; ``of`` a scene."""
@@ -85,7 +153,7 @@ class Picture:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns of primary rays."""
+        """Rows and columns of primary rays, in each pass."""
         rows, columns = self.pixels
-        more = 1 if self.samples == "corners" else 0
+        more = 1 if self.samples == CORNERS else 0
         return rows + more, columns + more

@@ -79,9 +79,8 @@ def trace(
     require_kind("picture", picture, Picture)
     check_scene(scene)
     picture = picture.of(scene)
-    rows, columns = picture.shape
-    _require_numbers(rows * columns, scene.name)
-    _require_memory(rows * columns, scene.name)
+    _require_numbers(picture.n_roots, scene.name)
+    _require_memory(picture.n_roots, scene.name)
     frame = frame_of(scene)
     geometry = flatten(scene, frame)
     rules = spawning(scene, picture, frame, geometry)
@@ -143,7 +142,6 @@ def _workload(
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, itineraries = map(_emptied, lists)
-    rows, columns = picture.shape
     objects = columns_of(scene)
     bounds = boxes_of(objects, frame.origin)
     return frozen(
@@ -153,7 +151,7 @@ def _workload(
             picture=picture.shape,
             kinds=kinds,
             parents=parents,
-            child_offsets=np.cumsum(np.insert(n_children, 0, rows * columns), dtype=np.int32),
+            child_offsets=np.cumsum(np.insert(n_children, 0, picture.n_roots), dtype=np.int32),
             pixels=pixels_of(parents),
             hits=hits,
             hit_distances=frame.scene_lengths(distances),
@@ -164,6 +162,7 @@ def _workload(
             object_triangles=geometry.n_triangles,
             object_bytes=sizes_on_the_wire(objects),
             object_centroids=frame.rounded(bounds.mean(axis=1)),
+            samples=picture.passes,
         )
     )
 
