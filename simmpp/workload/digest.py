@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 from collections.abc import Iterator
 
@@ -30,8 +29,9 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
     picture = picture.of(scene)
-    _, *settings = dataclasses.astuple(picture)
-    yield memoryview(repr((source_digest(TRACER), picture.pixels, *settings)).encode())
+    settings = {**vars(picture), "resolution": picture.pixels, "samples": picture.shape}
+    told = sorted({**settings, "passes": picture.passes}.items())
+    yield memoryview(repr((source_digest(TRACER), told)).encode())
     camera = scene.camera
     yield _numbers(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _numbers(*(x for light in scene.lights if picture.shadows for x in light.position))

@@ -20,6 +20,8 @@ MOST_PATHS = 65536
 """Of each pixel."""
 PATHS = 16
 """Of each pixel, when not given."""
+OF_WHITTED, OF_PATHS = ("max_depth",), ("depth", "roulette", "seed")
+"""Settings that only one way to render has."""
 OWN = "own"
 """The resolution that the scene itself asks for."""
 _RESOLUTION = f"an integer from 1 to {MOST_PIXELS}, [width, height], or {OWN}"
@@ -87,7 +89,7 @@ class Picture:
     max_depth: Annotated[int, *integer(1, 100)] = 5
     """Depth of the deepest ray that is not a shadow ray; the eye ray has depth 1."""
     depth: Annotated[int, *integer(1, 1000)] = 16
-    """Of paths: depth of the deepest ray; the eye ray has depth 1. No shadow ray is spawned there."""
+    """Of paths: depth of the deepest ray, shadow rays included; the eye ray has depth 1."""
     roulette: Annotated[int, *integer(1, 1001)] = 4
     """Of paths: depth from which chance may end one."""
     seed: Annotated[int, *integer(0, 2**32 - 1)] = 0
@@ -113,19 +115,16 @@ class Picture:
 
     @model_validator(mode="after")
     def _goes_together(self) -> Picture:
-        is_path, others = (
-            self.render == PATH,
-            (self.max_depth, self.depth, self.roulette, self.seed),
-        )
+        is_path = self.render == PATH
         if is_path and isinstance(self.samples, str):
             raise mistake(f"samples: value {self.samples!r}: expected {_COUNTED}")
         if not is_path and isinstance(self.samples, int):
             raise mistake(f"samples: value {self.samples}: a number goes with render: path only")
-        defaults = (5, 16, 4, 0)
-        for k, name in enumerate(("max_depth", "depth", "roulette", "seed")):
-            if others[k] != defaults[k] and is_path == (k == 0):
-                with_what = "render: whitted, paths have depth" if is_path else "render: path"
-                raise mistake(f"{name} goes with {with_what}")
+        defaults = {field.name: field.default for field in dataclasses.fields(self)}
+        for name in OF_WHITTED if is_path else OF_PATHS:
+            if getattr(self, name) != defaults[name]:
+                others = "; paths have depth" if is_path else ""
+                raise mistake(f"{name} goes with render: {'whitted' if is_path else PATH}{others}")
         return self
 
     @property

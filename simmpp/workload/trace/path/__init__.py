@@ -1,1 +1,1 @@
-"""Path tracing: rays that scatter by chance, with numbers that depend on nothing but their place."""
+"""Path tracing: rays scatter by chance, drawn by counting: a function of seed and place alone."""

@@ -9,14 +9,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from simmpp.common.compiled import kernel
 from simmpp.scene.scene import Vector
 from simmpp.workload.trace.exact import Floats, row_of
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.trace.path.philox import numbers
-from simmpp.workload.trace.path.rules import Lamps, Paths
+from simmpp.workload.trace.path.rules import Paths
 from simmpp.workload.trace.surface import Surface
 from simmpp.workload.trace.vectors import cross, dot, minus, moved, normalised, times, vector
 

@@ -63,7 +63,7 @@ def paths_of(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
     material_of = columns.materials.astype(np.int32)
     materials = np.array([_row(m) for m in scene.materials], np.float64).reshape(-1, 9)
     shines = (materials[:, 6:] > 0).any(axis=1)[material_of] & (columns.kinds >= POLYGON)
-    sampled = shines & picture.shadows
+    sampled: NDArray[np.bool_] = np.logical_and(shines, picture.shadows)
     return Paths(
         materials=materials,
         material_of=material_of,
@@ -80,7 +80,7 @@ def paths_of(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
 
 
 def _row(material: Material) -> tuple[float, ...]:
-    """Shares that sum to more than 1 are scaled to it: else a closed room shone brighter forever."""
+    """Shares that sum to more than 1 are scaled to it: a closed room would never get dark."""
     diffuse = [material.kd * share for share in material.colour]
     shares = (*diffuse, max(diffuse), material.ks, material.transmittance)
     total = max(1.0, sum(shares[3:]))
