@@ -16,11 +16,11 @@ from simmpp.scene.scene import Scene
 MOST_PIXELS = 16384
 """Along each side."""
 PATH, CORNERS = "path", "corners"
-MOST_PATHS = 65536
+MOST_SAMPLES = 65536
 """Of each pixel."""
 PATHS = 16
 """Of each pixel, when not given."""
-OF_WHITTED, OF_PATHS = ("max_depth",), ("depth", "roulette", "seed")
+OF_WHITTED, OF_PATHS = ("max_depth",), ("depth", "roulette")
 """Settings that only one way to render has."""
 OWN = "own"
 """The resolution that the scene itself asks for."""
@@ -47,16 +47,16 @@ Resolution = Annotated[
 ]
 
 
-_COUNTED = f"a number of paths per pixel from 1 to {MOST_PATHS}"
+_COUNTED = f"a number per pixel from 1 to {MOST_SAMPLES}"
 _SAMPLES = f"centres, corners, or {_COUNTED}"
-_NUMBER = {"type": "integer", "minimum": 1, "maximum": MOST_PATHS}
+_NUMBER = {"type": "integer", "minimum": 1, "maximum": MOST_SAMPLES}
 
 
 def _samples(value: Any) -> Any:
     if isinstance(value, str) and value in ("centres", CORNERS):
         return value
     try:
-        return whole(value, 1, MOST_PATHS)
+        return whole(value, 1, MOST_SAMPLES)
     except ConfigError:
         raise ConfigError(f"value {shown(value)}: expected {_SAMPLES}") from None
 
@@ -64,7 +64,7 @@ def _samples(value: Any) -> Any:
 Samples = Annotated[
     str | int,
     parsed_by(_samples),
-    Expect(_SAMPLES, {"anyOf": [{"enum": ["centres", CORNERS]}, _NUMBER]}, "paths"),
+    Expect(_SAMPLES, {"anyOf": [{"enum": ["centres", CORNERS]}, _NUMBER]}, "rays"),
 ]
 
 
@@ -80,26 +80,26 @@ class Picture:
     resolution: Resolution = 512
     """Pixels along each side of a square, or across and down; `own` takes what the scene asks for:
     NFF's line `resolution`, without one 512 x 512."""
-    render: Literal["whitted", "path"] = "whitted"
-    """Whitted's rays: every mirrored and refracted one, and shadow rays to all lights; or paths,
-    which go on from each hit with one ray drawn by chance, and one shadow ray."""
-    samples: Samples | None = None
-    """A ray per pixel centre (when not given), or per corner (the SPD's rules); of paths their
-    number per pixel, 16 when not given."""
+    samples: Samples = "centres"
+    """A ray per pixel centre, or per corner (the SPD's rules), or so many through points of each
+    pixel that are drawn by chance. Paths are always drawn: 16 when no number is given."""
     max_depth: Annotated[int, *integer(1, 100)] = 5
     """Depth of the deepest ray that is not a shadow ray; the eye ray has depth 1."""
-    depth: Annotated[int, *integer(1, 1000)] = 16
-    """Of paths: depth of the deepest ray, shadow rays included; the eye ray has depth 1."""
-    roulette: Annotated[int, *integer(1, 1001)] = 4
-    """Of paths: depth from which chance may end one."""
-    seed: Annotated[int, *integer(0, 2**32 - 1)] = 0
-    """Of paths: what their chance is drawn from."""
     shadows: Switch = True
     """Trace shadow rays."""
     reflection: Switch = True
     """Trace reflected rays."""
     refraction: Switch = True
     """Trace refracted rays."""
+    render: Literal["whitted", "path"] = "whitted"
+    """Whitted's rays: every mirrored and refracted one, and shadow rays to all lights; or paths,
+    which go on from each hit with one ray drawn by chance, and one shadow ray."""
+    depth: Annotated[int, *integer(1, 1000)] = 16
+    """Of paths: depth of the deepest ray, shadow rays included; the eye ray has depth 1."""
+    roulette: Annotated[int, *integer(1, 1001)] = 4
+    """Of paths: depth from which chance may end one."""
+    seed: Annotated[int, *integer(0, 2**32 - 1)] = 0
+    """What chance is drawn from, with a number of samples or paths."""
 
     def of(self, scene: Scene) -> Picture:
         """The same with a resolution in numbers: ``own`` is the scene's.
@@ -116,10 +116,10 @@ class Picture:
     @model_validator(mode="after")
     def _goes_together(self) -> Picture:
         is_path = self.render == PATH
-        if is_path and isinstance(self.samples, str):
-            raise mistake(f"samples: value {self.samples!r}: expected {_COUNTED}")
-        if not is_path and isinstance(self.samples, int):
-            raise mistake(f"samples: value {self.samples}: a number goes with render: path only")
+        if is_path and self.samples == CORNERS:
+            raise mistake(f"samples: value {CORNERS!r}: expected {_COUNTED}, with render: path")
+        if self.seed and not self.is_drawn:
+            raise mistake("seed goes with a number of samples, or render: path")
         defaults = {field.name: field.default for field in dataclasses.fields(self)}
         for name in OF_WHITTED if is_path else OF_PATHS:
             if getattr(self, name) != defaults[name]:
@@ -130,9 +130,14 @@ class Picture:
     @property
     def passes(self) -> int:
         """Primary rays of each pixel, each in a pass of its own over the picture."""
-        if self.render != PATH:
-            return 1
-        return self.samples if isinstance(self.samples, int) else PATHS
+        if isinstance(self.samples, int):
+            return self.samples
+        return PATHS if self.render == PATH else 1
+
+    @property
+    def is_drawn(self) -> bool:
+        """Primary rays go through points that are drawn by chance."""
+        return isinstance(self.samples, int) or self.render == PATH
 
     @property
     def n_roots(self) -> int:

@@ -22,7 +22,7 @@ from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.frame import Frame
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
-from simmpp.workload.trace.path.generations import first_paths, next_paths
+from simmpp.workload.trace.path.generations import drawn_rays, next_paths
 from simmpp.workload.trace.path.rules import Paths, paths_of
 from simmpp.workload.trace.ray_batch import RayBatch, unwritten
 from simmpp.workload.trace.surface import Surface, added, faces, reflected, refracted, surface_at
@@ -67,8 +67,8 @@ def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
 
 def first_generation(scene: Scene, picture: Picture, frame: Frame) -> RayBatch:
     """The primary rays."""
-    if picture.render == PATH:
-        return first_paths(scene, picture, frame, np.arange(picture.n_roots, dtype=np.int32))
+    if picture.is_drawn:
+        return drawn_rays(scene, picture, frame, np.arange(picture.n_roots, dtype=np.int32))
     eye, directions = primary_rays(scene.camera, picture, frame)
     n = len(directions)
     return RayBatch(

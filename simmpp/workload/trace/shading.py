@@ -225,10 +225,9 @@ def _gather(
 
 
 def _pixels(colours: Floats, picture: Picture) -> Floats:
-    """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners."""
-    rows, columns = picture.shape
-    samples = colours[: rows * columns].reshape(rows, columns, 3)
+    """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners or samples."""
     if picture.samples != CORNERS:
-        return samples
+        return picture_of_roots(colours[: picture.n_roots], picture.shape, picture.passes)
+    samples = colours[: picture.n_roots].reshape(*picture.shape, 3)
     mean: Floats = (samples[:-1, :-1] + samples[:-1, 1:] + samples[1:, :-1] + samples[1:, 1:]) / 4
     return mean

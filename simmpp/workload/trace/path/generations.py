@@ -28,7 +28,7 @@ EYE = 0
 """Event of the numbers that place a path in its pixel; the event of a hit is its depth."""
 
 
-def first_paths(scene: Scene, picture: Picture, frame: Frame, roots: Ints) -> RayBatch:
+def drawn_rays(scene: Scene, picture: Picture, frame: Frame, roots: Ints) -> RayBatch:
     """The primary rays of these roots, each through a point of its pixel drawn by chance."""
     rays, (rows, columns) = unwritten(len(roots)), picture.pixels
     rays.kinds[:], rays.limits[:], rays.sources[:], rays.parents[:] = PRIMARY, np.inf, -1, -1
