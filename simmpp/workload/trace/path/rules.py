@@ -62,8 +62,8 @@ def paths_of(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
     columns = columns_of(scene)
     material_of = columns.materials.astype(np.int32)
     materials = np.array([_row(m) for m in scene.materials], np.float64).reshape(-1, 9)
-    shines = (materials[:, 6:] > 0).any(axis=1)[material_of] & (columns.kinds >= POLYGON)
-    sampled: NDArray[np.bool_] = np.logical_and(shines, picture.shadows)
+    shines = np.flatnonzero((materials[:, 6:] > 0).any(axis=1))
+    sampled = np.isin(material_of, shines) & (columns.kinds >= POLYGON) & picture.shadows
     return Paths(
         materials=materials,
         material_of=material_of,
