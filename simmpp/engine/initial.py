@@ -105,7 +105,7 @@ def _sizes(
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
-    each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
+    each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -149,7 +149,7 @@ def _policy_views(
     """(1,) VIEW with what stays as it is in it; (nb,) for a policy with a memory."""
     nb = placement.processors
     views = np.zeros(nb if _remembers(parameters.rules) else 1, VIEW)
-    views["nb"], views["initial_load"] = nb, workload.n_primaries // nb
+    views["nb"], views["initial_load"] = placement.island, workload.n_primaries // nb
     for name in NUMBERS:
         views[name] = _in_rays(getattr(parameters, name), workload, placement)
     own = parameters.numbers
@@ -174,6 +174,7 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
     return {
         "processors": machine.processors,
+        "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
@@ -228,6 +229,8 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     s: Run = runs[0]
     for me in range(s.processors):
         pes(s)[me].first = NONE
+        pes(s)[me].place = me % s.island
+        pes(s)[me].base = me - pes(s)[me].place
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
         link(rays(s), pe, ray)
