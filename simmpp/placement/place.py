@@ -32,7 +32,7 @@ def place(
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
     island = island_of(rules, processors)
-    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    starts_on = _starts(rules, workload, processors, seed)
     owner_of = _owners(rules, workload, starts_on, island, seed)
     deal = Deal(workload, owner_of, starts_on, processors, island)
     offsets, objects = replicas(deal, memory, seed)
@@ -57,6 +57,12 @@ def island_of(rules: PlacementRules, processors: int) -> int:
         expected = f"expected a divisor of {processors}, the number of PEs"
         raise ConfigError(f"value {rules.islands}: {expected}", where="placement.islands")
     return processors // rules.islands
+
+
+def _starts(rules: PlacementRules, workload: Workload, processors: int, seed: int) -> Ids:
+    """The PE of each primary ray: all samples of a pixel start where it is dealt to."""
+    of_pixels = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    return np.tile(of_pixels, workload.samples) if workload.samples > 1 else of_pixels
 
 
 def _owners(
@@ -95,7 +101,7 @@ def rotated(
     Source: systematic sampling (Cochran 1977, Sampling Techniques, chapter 8), along a sweep.
     """
     n_objects = workload.n_objects
-    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    starts_on = _starts(rules, workload, processors, seed)
     island = island_of(rules, processors)
     owner_of = _owners(rules, workload, starts_on, island, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]

@@ -193,7 +193,7 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
 
 @kernel
 def _who_has(s: Run, me: int, obj: int, chosen: int) -> int:
-    """The PE that the policy has chosen of its island, if it has the object for good; else the owner."""
+    """The PE of its island that the policy has chosen, if it has the object; else the owner."""
     other = pes(s)[me].base + chosen
     if 0 <= chosen < s.island and is_holder(s, other, obj):
         return other
