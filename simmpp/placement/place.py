@@ -7,12 +7,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from simmpp.common.errors import ConfigError
 from simmpp.common.randomness import generator
 from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
 from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
-from simmpp.placement.placement import Memory, Placement, PlacementRules
+from simmpp.placement.placement import Memory, Placement, PlacementRules, island_of
 from simmpp.placement.residents import Deal, as_csr, kept_count, replicas, resident_count
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
@@ -46,17 +45,6 @@ def place(
         transient_bytes=memory.fetch or 0,
         islands=rules.islands,
     )
-
-
-def island_of(rules: PlacementRules, processors: int) -> int:
-    """PEs of an island.
-
-    Raises ConfigError, whose place is the key, if the islands are not equal.
-    """
-    if processors % rules.islands:
-        expected = f"expected a divisor of {processors}, the number of PEs"
-        raise ConfigError(f"value {rules.islands}: {expected}", where="placement.islands")
-    return processors // rules.islands
 
 
 def _starts(rules: PlacementRules, workload: Workload, processors: int, seed: int) -> Ids:

@@ -177,7 +177,7 @@ class PlacementRules:
     pixels: PixelRule = "blocks"
     """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
     squares of so many pixels along each side (cells)."""
-    islands: Annotated[int, *integer(1, MOST_COUNT, "islands")] = 1
+    islands: Annotated[int, *integer(1, MOST_COUNT)] = 1
     """Equal parts of the machine, PEs in a row, that own the whole scene each and send one another
     nothing; pixels are dealt over all PEs. As many as PEs: the replicated scene."""
 
@@ -187,6 +187,17 @@ class PlacementRules:
         if self.islands == 1:
             del plain["islands"]
         return plain
+
+
+def island_of(rules: PlacementRules, processors: int) -> int:
+    """PEs of an island.
+
+    Raises ConfigError, whose place is the key, if the islands are not equal.
+    """
+    if processors % rules.islands:
+        expected = f"expected a divisor of {processors}, the number of PEs"
+        raise ConfigError(f"value {rules.islands}: {expected}", where="placement.islands")
+    return processors // rules.islands
 
 
 @documented
