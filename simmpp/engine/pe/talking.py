@@ -2,8 +2,8 @@
 
 A message is USER_WORDS numbers; it is sent, travels and is received as any other. Whatever the
 hooks say, a run ends: between two things that get a PE on (a test, a finished ray, a message with
-rays or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many times, at least
-WAKING_PS apart.
+rays or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many times,
+at least WAKING_PS apart.
 """
 
 from __future__ import annotations
