@@ -102,7 +102,8 @@ def _sizes(
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
+    known = nb * placement.island
+    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,

@@ -40,7 +40,8 @@ class Talking(Dispatch):
             view = self.view_of_words(pe, None, self.rules.idle)
             pe.wish = int(self.rules.idle(view))  # type: ignore[arg-type]
             sent = len(self.ledger.sent)
-            clock = time if view.other == -1 else self.say(time, pe, view.other, view.words)
+            other = dict(enumerate(self.island_of(pe.number))).get(view.other, pe.number)
+            clock = time if view.other == -1 else self.say(time, pe, other, view.words)
             if len(self.ledger.sent) > sent:
                 self.schedule(clock, pe, "rest")
                 return
@@ -86,7 +87,7 @@ class Talking(Dispatch):
 
     def most(self) -> int:
         """Messages that a PE may say, and times that it is woken, until it gets on."""
-        return 2 * (self.nb - 1)
+        return 2 * (len(self.islands[0]) - 1)
 
     def say(self, clock: int, pe: PE, other: int, words: list[int]) -> int:
         """Send words, if there are not too many already and there is such a PE."""
@@ -99,7 +100,7 @@ class Talking(Dispatch):
     def view_of_words(self, pe: PE, other: int | None, hook: Hook) -> SimpleNamespace:
         """What a hook is shown of who has sent a message, or of nobody."""
         machine, draws = self.machine, "random" in names_in(hook)
-        view = self.view(pe, (pe.number + 1) % self.nb if other is None else other, False, draws)
+        view = self.view(pe, pe.number if other is None else other, False, draws)
         view.waiting, view.unasked = len(pe.waiting), 0
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0

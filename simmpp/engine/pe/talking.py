@@ -2,8 +2,8 @@
 
 A message is USER_WORDS numbers; it is sent, travels and is received as any other. Whatever the
 hooks say, a run ends: between two things that get a PE on (a test, a finished ray, a message with
-rays or objects) it sends at most 2 (nb - 1) of them and is woken as many times, at least
-WAKING_PS apart.
+rays or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many times,
+at least WAKING_PS apart.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def hear(s: Run, me: int, message: int, now_ps: int) -> int:
         view.words[i] = user_words(s)[USER_WORDS * message + i]
     if consult(s.heard, view) <= 0:
         return now_ps
-    return _say(s, view, me, source, now_ps)
+    return _say(s, view, me, source - pes(s)[me].base, now_ps)
 
 
 @kernel
@@ -81,7 +81,7 @@ def wake(s: Run, me: int, now_ps: int) -> None:
 
 @kernel
 def _most(s: Run) -> int:
-    return 2 * (s.processors - 1)
+    return 2 * (s.island - 1)
 
 
 @kernel
@@ -103,21 +103,23 @@ def _ask(s: Run, me: int, pe: Row, now_ps: int) -> int:
 
 
 @kernel
-def _say(s: Run, view: View, me: int, other: int, now_ps: int) -> int:
-    """Send the words in the view to a PE; one that is nobody, or one too many, is dropped."""
+def _say(s: Run, view: View, me: int, place: int, now_ps: int) -> int:
+    """Send the words in the view to a PE of the island; what is for nobody, or one too many, is
+    dropped."""
     pe = pes(s)[me]
-    if other < 0 or other >= s.processors or other == me or pe.user_sent >= _most(s):
+    is_someone = 0 <= place < s.island and place != pe.place
+    if not is_someone or pe.user_sent >= _most(s):
         s.user_dropped += 1
         return now_ps
     pe.user_sent += 1
-    return send_user(s, me, other, view, now_ps)
+    return send_user(s, me, pe.base + place, view, now_ps)
 
 
 @kernel
 def _show(s: Run, view: View, me: int, other: int, now_ps: int, reads: int) -> None:
     """Show ``heard`` who has sent a message, ``idle`` nobody."""
     pe = pes(s)[me]
-    view.load, view.other = pe.load, other
+    view.load, view.other = pe.load, NONE if other == NONE else other - pe.base
     view.waiting, view.unasked = pe.load - pe.n_ready, 0
     if reads == 0:
         return
