@@ -54,7 +54,8 @@ def long_test(value: object) -> object:
         picoseconds(value)
     except ConfigError as error:
         raise ConfigError(f"{error.problem}, or a mapping by kind of primitive") from None
-    return dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value) | {"per_triangle": 0}
+    alike = dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value)
+    return alike | {"per_triangle": 0, "log2": 0}
 
 
 def named_levels(value: object) -> object:

@@ -14,7 +14,7 @@ from typing import Any
 from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
-from oracles.network import distance
+from oracles.network import distance, startups_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -76,7 +76,7 @@ class Simulation(Dispatch):
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
-        cost = self.machine.receive_startup_ps
+        _, cost = startups_ps(self.machine, message.source, pe.number)
         unpack = self.machine.unpack
         cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)

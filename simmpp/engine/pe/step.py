@@ -24,6 +24,7 @@ from simmpp.engine.arrays.views import (
     tested_rays,
     topology,
 )
+from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
@@ -94,7 +95,7 @@ def note_peaks(s: Run, pe: Row) -> None:
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack one message and do what it asks for; returns the end of that work."""
     pe, m = pes(s)[me], messages(s)[message]
-    clock_ps = now_ps + s.receive_startup_ps + parts_ps(s, message, UNPACK)
+    clock_ps = now_ps + receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
     # Heard before an answer is packed, and whatever the message is.
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
