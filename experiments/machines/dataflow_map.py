@@ -1,12 +1,11 @@
 """Which dataflow is fastest, over the bytes of an object and how often a PE uses one it fetched?
 
-    python experiments/machines/policy_map.py
+    python experiments/machines/dataflow_map.py
 
 Rays of ``rays.py``: 4,096 start on each PE and each meets 4 different objects, drawn at random, so
 with N objects a PE uses each 16,384 / N times. PEs own their share, have nothing else at first and
-keep what they fetch. Each machine is a panel; rows of the figure are who serves requests, as the
-preset has it and the PE itself. Writes policy_map.csv (the time of each dataflow at each point),
-unless it is there, and the figure.
+keep what they fetch. Each machine is a panel. Writes dataflow_map.csv (the time of each dataflow at
+each point), unless it is there, and the figure.
 """
 
 from __future__ import annotations
@@ -60,14 +59,8 @@ Row = dict[str, Any]
 
 
 def machines() -> dict[str, Machine]:
-    """By name: as the preset says, and where a PE serves requests otherwise, by itself as well."""
-    found = {}
-    for name, nb in MACHINES.items():
-        found[name] = machine(name, {}, nb)
-        for service in ("pe", "nic"):
-            if found[name].service != service and (name == "t3e" or service == "pe"):
-                found[f"{name}, service {service}"] = machine(name, {"service": service}, nb)
-    return found
+    """By name."""
+    return {name: machine(name, {}, nb) for name, nb in MACHINES.items()}
 
 
 def times_ps(made: Machine, workload: Workload) -> dict[str, int]:
@@ -107,7 +100,7 @@ def draw(rows: list[Row]) -> None:
         figure.supxlabel("bytes of an object", fontsize=9)
         figure.supylabel("rays per fetch", fontsize=9)
         legend(figure)
-        save(figure, HERE / "policy_map")
+        save(figure, HERE / "dataflow_map")
 
 
 def draw_panel(axes: Axes, rows: list[Row], title: str) -> None:
@@ -157,7 +150,7 @@ def legend(figure: Figure) -> None:
 
 def main() -> None:
     """Simulate, write rows, draw."""
-    path = HERE / "policy_map.csv"
+    path = HERE / "dataflow_map.csv"
     if not path.exists():
         rows = simulated()
         write_csv(rows, list(rows[0]), path)
