@@ -9,8 +9,8 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
 - *latency*: nb x (makespan - busy time of the busiest PE), when even that one waits: for messages
-  on their way, and for those who answer. Of that, the part that flights are latency, with one hop;
-  flights between levels are those of the outermost.
+  on their way, and for those who answer. Of that, the part that flights are latency. Flights are
+  the mean of those between all pairs of PEs (``flights``): rows don't say who sent to whom.
 - *bandwidth*: the rest of that, the part that flights are bytes on a link.
 
 Busy is who computes or communicates. The last four are what PEs wait; where only sums over PEs are
@@ -33,6 +33,7 @@ from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.methods.simulation import integers
+from simmpp.run.flights import mean_flight
 
 COMPUTE, STARTUPS, COPYING = "compute", "startups", "copying"
 HOT, IMBALANCE, LATENCY, BANDWIDTH = "one hot PE", "imbalance", "latency", "bandwidth"
@@ -52,31 +53,21 @@ class MessageCosts:
     """What limits need of a machine."""
 
     startups_ps: int
-    """Of both PEs, for any message; of levels those of the outermost."""
+    """Of both PEs, for any message; the mean of levels'."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
-    """Latency, and one hop; of levels that of the outermost."""
+    """Latency, with the hops between two PEs in the mean; of levels the mean."""
     bytes_per_s: int
     """0: unlimited."""
 
     @classmethod
     def of(cls, constants: Mapping[str, Any]) -> MessageCosts:
         """From a machine's fields, as ``run.json`` has them; KeyError where these were others."""
-        startups = ("send_startup_ps", "receive_startup_ps")
-        startups_ps = sum(constants[name] for name in startups)
-        rates = [constants["link_bytes_per_s"], constants["injection_bytes_per_s"]]
-        flight_ps = constants["latency_ps"] + constants["hop_latency_ps"]
-        if levels := constants.get("levels"):
-            rates, flight_ps = [levels[-1]["bytes_per_s"]], levels[-1]["latency_ps"]
-            startups_ps = sum(levels[-1].get(name, constants[name]) for name in startups)
+        flight = mean_flight(constants)
         copies = zip(constants["pack"], constants["unpack"], strict=True)
-        return cls(
-            startups_ps,
-            tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies),
-            flight_ps,
-            min(filter(None, rates), default=0),
-        )
+        fixed_ps = tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies)
+        return cls(flight.startups_ps, fixed_ps, flight.latency_ps, flight.bytes_per_s)
 
 
 @dataclass(frozen=True)
