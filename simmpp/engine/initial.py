@@ -20,6 +20,7 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
     Run,
 )
 from simmpp.engine.arrays.views import pes, rays
@@ -37,6 +38,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
@@ -129,7 +131,8 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
+    pack, unpack = copies(machine)
+    costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
         "itinerary_objects": workload.itinerary_objects,
@@ -176,6 +179,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "processors": machine.processors,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
@@ -227,7 +231,7 @@ def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
     """Make primary rays ready on the PEs of their pixels, in pixel order."""
     s: Run = runs[0]
     for me in range(s.processors):
-        pes(s)[me].first = NONE
+        pes(s)[me].first = pes(s)[me].in_hand = NONE
     for ray in range(pixel_pes.size):
         pe = pes(s)[pixel_pes[ray]]
         link(rays(s), pe, ray)

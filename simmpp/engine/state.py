@@ -76,8 +76,8 @@ class State:
                 self._grow("log", 2 * len(self.arrays["log"]))
 
     def ensure_heap(self) -> None:
-        """See to it that the heap has a place for every message and an instant of every PE."""
-        needed = len(self.messages) + len(self.pes) + 1
+        """See to it that the heap has a place for every message and an instant of every PE and thread."""
+        needed = len(self.messages) + len(self.arrays["processes"]) + 1
         if len(self.arrays["heap"]) < needed:
             self._grow("heap", needed)
 

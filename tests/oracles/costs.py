@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import floor
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
+from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
@@ -31,6 +32,30 @@ def slowest(machine: Machine) -> int:
 def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
     """Time to pack or unpack one message."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
+
+
+def sending(machine: Machine, pe: int, other: int, kind: int) -> int:
+    """What a PE pays for a message besides packing it; the kind is that of its first part."""
+    if machine.service == "nic" and kind in (REQUEST, LOAD):
+        return machine.get_startup_ps
+    return machine.send_startup_ps
+
+
+def receiving(machine: Machine, pe: int, other: int, kind: int) -> int:
+    """What a PE, or its thread, pays for a message from another, besides unpacking it."""
+    return machine.completion_ps if machine.service == "nic" else machine.receive_startup_ps
+
+
+def packing(machine: Machine, kind: int, payload_bytes: int) -> int:
+    """Time to pack a part of a message; what is got, and getting it, needs none."""
+    is_free = machine.service == "nic" and kind != RAYS
+    return 0 if is_free else copy_ps(machine.pack[kind], payload_bytes)
+
+
+def unpacking(machine: Machine, kind: int, payload_bytes: int) -> int:
+    """Time to unpack a part of a message."""
+    is_free = machine.service == "nic" and kind != RAYS
+    return 0 if is_free else copy_ps(machine.unpack[kind], payload_bytes)
 
 
 def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:

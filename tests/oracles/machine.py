@@ -11,10 +11,10 @@ import heapq
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from oracles.costs import copy_ps, intersection_ps
-from oracles.dispatch import Dispatch
+from oracles.costs import intersection_ps
 from oracles.ledger import Outcome
 from oracles.network import distance
+from oracles.serving import Serving
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -24,7 +24,7 @@ from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
-class Simulation(Dispatch):
+class Simulation(Serving):
     """The event loop and the activities of a PE."""
 
     def run(self) -> None:
@@ -36,6 +36,8 @@ class Simulation(Dispatch):
             "begin": self.begin,
             "dispatch": self.dispatch,
             "take": self.take,
+            "serve": self.serve,
+            "served": self.served,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -44,15 +46,6 @@ class Simulation(Dispatch):
             handlers[what](time, whom)
         if self.rays_left:
             raise AssertionError(f"{self.rays_left} rays left and nothing scheduled")
-
-    def arrive(self, time: int, message: Message) -> None:
-        """A message lies in the inbox; a sleeping PE wakes."""
-        self.ledger.arrived(time, message)
-        pe = self.pes[message.destination]
-        pe.inbox.append(message)
-        if pe.asleep:
-            pe.asleep = False
-            self.schedule(time, pe, "begin")
 
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
@@ -75,17 +68,13 @@ class Simulation(Dispatch):
         self.schedule(work_end, pe, "dispatch")
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
-        """Unpack one message and do what it asks for; returns the end of that."""
-        cost = self.machine.receive_startup_ps
-        unpack = self.machine.unpack
-        cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
-        clock = self.pay("communication", pe, time, cost)
-        self.ledger.received += 1
-        pe.known_load[message.source] = message.load
-        pe.heard[message.source] = clock
-        pe.in_flight_to[message.source] = 0
-        if message.count(OBJECT) or message.count(RAYS):
-            pe.peers.add(message.source)
+        """Unpack one message, or take it over, and do what it asks for; returns the end of that."""
+        if self.machine.service == "thread":
+            clock = self.pay("communication", pe, time, self.machine.handoff_ps)
+        else:
+            clock = self.pay("communication", pe, time, self.unpacking(pe, message))
+            self.ledger.received += 1
+            self.hear(clock, pe, message)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -96,7 +85,7 @@ class Simulation(Dispatch):
                 self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
         wanted = [part.obj for part in message.parts if part.kind == REQUEST]
-        if wanted:
+        if wanted and self.machine.service == "pe":
             answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
             clock = self.send(clock, pe, message.source, answer)
         self.sample_rays(pe)

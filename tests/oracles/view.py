@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from oracles.costs import copy_ps, intersection_ps
+from oracles.costs import intersection_ps, packing, receiving, sending, unpacking
 from oracles.network import distance, network_ps
 from oracles.state import PE
 from oracles.world import World
@@ -71,10 +71,18 @@ class Views(World):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[RAYS], n_bytes)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[RAYS], n_bytes)
-        view.flight_ps = network_ps(machine, pe.number, other, n_bytes)
+        here = pe.number
+        view.send_ps = sending(machine, here, other, RAYS) + packing(machine, RAYS, n_bytes)
+        receipt = receiving(machine, other, here, RAYS) + unpacking(machine, RAYS, n_bytes)
+        view.receive_ps, view.flight_ps = receipt, network_ps(machine, here, other, n_bytes)
+        self.with_thread(view)
         return view  # type: ignore[return-value]
+
+    def with_thread(self, view: SimpleNamespace) -> None:
+        """What a thread receives its PE takes over."""
+        if self.machine.service == "thread":
+            view.flight_ps += view.receive_ps
+            view.receive_ps = self.machine.handoff_ps
 
     def view_of_object(
         self, pe: PE, obj: int, unasked: int, nothing_else: bool, draws: bool
@@ -88,16 +96,18 @@ class Views(World):
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]
         asked, fetched = machine.request_bytes, n_bytes
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], asked)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[OBJECT], fetched)
-        view.flight_ps = (
-            network_ps(machine, pe.number, owner, asked)
-            + machine.receive_startup_ps
-            + copy_ps(machine.unpack[REQUEST], asked)
-            + machine.send_startup_ps
-            + copy_ps(machine.pack[OBJECT], fetched)
-            + network_ps(machine, owner, pe.number, fetched)
+        here = pe.number
+        view.send_ps = sending(machine, here, owner, REQUEST) + packing(machine, REQUEST, asked)
+        receipt = receiving(machine, here, owner, OBJECT) + unpacking(machine, OBJECT, fetched)
+        there, back = (
+            network_ps(machine, here, owner, asked),
+            network_ps(machine, owner, here, fetched),
         )
+        answering = receiving(machine, owner, here, REQUEST) + unpacking(machine, REQUEST, asked)
+        answering += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
+        view.receive_ps = receipt
+        view.flight_ps = there + back + (0 if machine.service == "nic" else answering)
+        self.with_thread(view)
         return view  # type: ignore[return-value]
 
     def known_load(self, clock: int, pe: PE, other: int) -> tuple[int, int]:

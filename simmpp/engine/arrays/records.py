@@ -12,6 +12,8 @@ Row = Any
 """A record of one of the arrays."""
 
 NONE = -1
+ITS_LOAD = -2
+"""In place of an object: the get of a PE's load."""
 
 PE = np.dtype(
     [
@@ -34,6 +36,9 @@ PE = np.dtype(
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
         ("draws", "i8"),  # random numbers that its policy was given
+        ("service_ps", "i8"),  # of its thread, which is busy until then:
+        ("served_until_ps", "i8"),
+        ("in_hand", "i4"),  # the message that its thread unpacks; NONE: none
     ],
     align=True,
 )
@@ -93,7 +98,7 @@ MESSAGE = np.dtype(
         ("next", "i4"),  # in the inbox
         ("part", "i4"),  # the message's next part, which is a row of its own; NONE: the last
         ("last_part", "i4"),  # of a message, in the row of its first part
-        ("obj", "i4"),
+        ("obj", "i4"),  # NONE: none; ITS_LOAD: a load is got
         ("first", "i4"),  # rays
         ("last", "i4"),
         ("n", "i4"),
@@ -118,7 +123,7 @@ EVENT = np.dtype(
         ("requests", "i4"),  # in the message
         ("load", "i4"),  # of the PE, when it is done
         ("ready", "i4"),  # rays of the load that are ready then; the others wait
-        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE or ANSWER
         ("kind", "i2"),  # of the message; NONE without one
     ]
 )
@@ -142,7 +147,7 @@ PROCESS = np.dtype(
         ("asleep", "i4"),
     ]
 )
-"""A PE as the compiled event loop sees it."""
+"""A PE, or its thread, as the compiled event loop sees it."""
 
 BINS = 1024
 """Bins of time; a run fills more than half of them."""
@@ -183,5 +188,7 @@ LOAD_INFO = {
 SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
 PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
 BEGIN, DISPATCH = range(2)
-ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
+ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE, ANSWER = range(6)
+BY_PE, BY_THREAD, BY_NIC = range(3)
+SERVICE = {"pe": BY_PE, "thread": BY_THREAD, "nic": BY_NIC}
 PACK, UNPACK = 0, 4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.records import NONE, PACK, UNPACK, Run
+from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, NONE, PACK, UNPACK, Run
 from simmpp.engine.arrays.views import (
     copy_costs,
     holder_offsets,
@@ -18,7 +18,7 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
 from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.machine.messages import OBJECT as OBJECT_MESSAGE
 from simmpp.machine.messages import RAYS, REQUEST
@@ -49,9 +49,10 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
-        view.receive_ps = s.receive_startup_ps + copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
+        view.send_ps = _sending_ps(s, me, other, RAYS, n_bytes)
+        view.receive_ps = _receiving_ps(s, other, me, RAYS, n_bytes)
         view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+        _leave_to_thread(s, view)
     _show_self(s, view, me, now_ps, s.send_reads)
 
 
@@ -80,14 +81,33 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
 @kernel
 def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
     """What a fetch costs the PE, and how long it takes besides."""
-    costs, request_bytes = copy_costs(s), s.request_bytes
-    view.send_ps = s.send_startup_ps + copy_ps(costs[PACK + REQUEST], request_bytes)
-    view.receive_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + OBJECT_MESSAGE], n_bytes)
-    there_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
-    back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    answer_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + REQUEST], request_bytes)
-    answer_ps += s.send_startup_ps + copy_ps(costs[PACK + OBJECT_MESSAGE], n_bytes)
-    view.flight_ps = there_ps + answer_ps + back_ps
+    request_bytes = s.request_bytes
+    view.send_ps = _sending_ps(s, me, owner, REQUEST, request_bytes)
+    view.receive_ps = _receiving_ps(s, me, owner, OBJECT_MESSAGE, n_bytes)
+    view.flight_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
+    view.flight_ps += flight_ps(s, owner, me, n_bytes + s.header_bytes)
+    if s.service != BY_NIC:
+        view.flight_ps += _receiving_ps(s, owner, me, REQUEST, request_bytes)
+        view.flight_ps += _sending_ps(s, owner, me, OBJECT_MESSAGE, n_bytes)
+    _leave_to_thread(s, view)
+
+
+@kernel
+def _leave_to_thread(s: Run, view: View) -> None:
+    """Where a thread receives, the PE takes over what was received on the way."""
+    if s.service == BY_THREAD:
+        view.flight_ps += view.receive_ps
+        view.receive_ps = s.handoff_ps
+
+
+@kernel
+def _sending_ps(s: Run, me: int, other: int, kind: int, n_bytes: int) -> int:
+    return sending_ps(s, me, other, kind) + copy_ps(copy_costs(s)[PACK + kind], n_bytes)
+
+
+@kernel
+def _receiving_ps(s: Run, me: int, other: int, kind: int, n_bytes: int) -> int:
+    return receiving_ps(s, me, other, kind) + copy_ps(copy_costs(s)[UNPACK + kind], n_bytes)
 
 
 @kernel
