@@ -25,7 +25,7 @@ from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading
 from simmpp.config.settings import Settings
 from simmpp.machine.layers import Layers
-from simmpp.machine.machine import TORUS, Machine
+from simmpp.machine.machine import POLLED, TORUS, Machine
 from simmpp.machine.presets import Preset, layered
 from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
@@ -215,9 +215,11 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
         key = ("machine", *error.where.split("."))
         raise misplaced(key, error.problem, point.places) from None
     method = point.settings.method
-    if METHODS[method].knows_torus_alone and machine.topology != TORUS:
-        problem = f"value {method!r}: expected {SIMULATE} where the topology is {machine.topology}"
-        raise misplaced(("method",), problem, point.places)
+    other = {"topology": TORUS, "service": POLLED}
+    for key, known in other.items() if METHODS[method].knows_polled_torus_alone else ():
+        if (value := getattr(machine, key)) != known:
+            problem = f"value {method!r}: expected {SIMULATE} where the {key} is {value}"
+            raise misplaced(("method",), problem, point.places)
     return point
 
 

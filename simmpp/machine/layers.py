@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import in_words
 from simmpp.machine.constants import Constants
-from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Level
+from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Level
 from simmpp.machine.transfer import slower
 
 _BELONGS = {
@@ -28,7 +28,7 @@ class Layers:
     """As ``Constants.flat`` has them."""
     sources: dict[str, str] = field(default_factory=dict)
     """By the same keys."""
-    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS})
+    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS, "service": POLLED})
     """The choices."""
     level_names: tuple[str, ...] = ()
     """The innermost first."""

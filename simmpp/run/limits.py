@@ -4,7 +4,7 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 
 - *compute*: tests and rays. That is the bound, which no way of sending messages changes.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
-  unpacking included.
+  unpacking included; with a thread, what they cost the PEs themselves.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
@@ -31,6 +31,7 @@ from typing import Any
 
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
+from simmpp.machine.service import fixed_costs
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.methods.simulation import integers
 
@@ -51,8 +52,8 @@ Numbers = Mapping[str, Any]
 class MessageCosts:
     """What limits need of a machine."""
 
-    startups_ps: int
-    """Of both PEs, for any message."""
+    startups_ps: tuple[int, ...]
+    """Of both PEs, for each kind of message."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
@@ -67,13 +68,7 @@ class MessageCosts:
         flight_ps = constants["latency_ps"] + constants["hop_latency_ps"]
         if levels := constants.get("levels"):
             rates, flight_ps = [levels[-1]["bytes_per_s"]], levels[-1]["latency_ps"]
-        copies = zip(constants["pack"], constants["unpack"], strict=True)
-        return cls(
-            constants["send_startup_ps"] + constants["receive_startup_ps"],
-            tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies),
-            flight_ps,
-            min(filter(None, rates), default=0),
-        )
+        return cls(*fixed_costs(constants), flight_ps, min(filter(None, rates), default=0))
 
 
 @dataclass(frozen=True)
@@ -145,7 +140,9 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
         return {COMMUNICATION: total_ps}
     parts = [numbers.get(f"{kind}_parts") or numbers[f"{kind}_messages"] for kind in KINDS]
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
-    startups_ps = min(total_ps, numbers["messages"] * costs.startups_ps + fixed_ps)
+    counts = (numbers[f"{kind}_messages"] for kind in KINDS)
+    each_ps = sum(n * each for n, each in zip(counts, costs.startups_ps, strict=True))
+    startups_ps = min(total_ps, each_ps + fixed_ps)
     return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
-from simmpp.methods.columns import KEYS, METHOD, NUMBERS, PACKED, result_columns
+from simmpp.machine.machine import THREAD
+from simmpp.methods.columns import KEYS, METHOD, NUMBERS, PACKED, SERVED, result_columns
 from simmpp.methods.simulation import integers
 from simmpp.methods.table import METHODS
 from simmpp.run.point import Point, PolicyRun
@@ -46,7 +47,7 @@ def point_row(
         "seed": seed,
         "method": settings.method,
         "engine": settings.engine if METHODS[settings.method].uses_engine else "",
-        **dict.fromkeys((*NUMBERS, *PACKED), ""),
+        **dict.fromkeys((*NUMBERS, *PACKED, *SERVED), ""),
         **numbers,
         "error": error,
     }
@@ -67,7 +68,8 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
     packs = any(run.parameters.packs for run in runs)
-    write_csv(in_order(row(point, run) for run in runs), result_columns(packs=packs), path)
+    columns = result_columns(packs=packs, threads=point.machine.service == THREAD)
+    write_csv(in_order(row(point, run) for run in runs), columns, path)
 
 
 def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from simmpp.common.errors import ConfigError
@@ -16,6 +17,7 @@ from simmpp.common.places import misplaced
 from simmpp.config.axes import POINTS, SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
+from simmpp.machine.machine import THREAD
 from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
@@ -57,11 +59,13 @@ class Plan:
         swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
 
-    @property
+    @cached_property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
         packs = any(planned.point.policy.packs for planned in self.points)
-        return result_columns(self.further, packs=packs)
+        layers = (planned.point.config.layers for planned in self.points)
+        threads = any(each.words["service"] == THREAD for each in layers)
+        return result_columns(self.further, packs=packs, threads=threads)
 
     @property
     def tasks(self) -> list[Task]:

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from simmpp.machine.messages import OBJECT, RAYS
 
-
 WHOSE_LOAD = -2
 """In place of an object: a get of a PE's load."""
 

@@ -13,7 +13,7 @@ from simmpp.machine.transfer import transfer_ps
 @kernel
 def sending_ps(s: Run, me: int, other: int, kind: int) -> int:
     """What a PE pays for sending a message whose first part is of that kind, besides packing."""
-    if s.service == BY_NIC and (kind == REQUEST or kind == LOAD):
+    if s.service == BY_NIC and kind in (REQUEST, LOAD):
         return s.get_startup_ps
     return s.send_startup_ps
 

@@ -1,4 +1,4 @@
-"""Gets that come to a network card: what they ask for departs at once, and the PE has no part in it.
+"""Gets that come to a network card: what they ask for departs at once, without the PE.
 
 ``machine.service: nic``; the PE that gets is in ``sending`` and ``step`` like any that sends and
 receives. A message of a get becomes its answer, in its place.

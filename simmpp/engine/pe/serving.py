@@ -1,8 +1,8 @@
 """The thread beside a PE that receives its messages: ``machine.service: thread``.
 
-It alternates between two instants, which fall together where it sent no answer: one message has been
-unpacked, and it begins with the next. What is not only requests it hands over to its PE, which takes
-it over as it would receive it (``step.receive``).
+It alternates between two instants, which fall together where it sent no answer: one message has
+been unpacked, and it begins with the next. What is not only requests it hands over to its PE, which
+takes it over as it would receive it (``step.receive``).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from simmpp.machine.messages import REQUEST
 
 @kernel
 def serve(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Act on an instant of the thread of PE ``me``; ``message`` is the oldest of its inbox, or NONE.
+    """Act on an instant of the thread of PE ``me``; ``message`` is its oldest one, or NONE.
 
     Returns the time of its next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold whether the message was consumed, the number of messages in the

@@ -33,10 +33,10 @@ from simmpp.engine.arrays.views import (
     tested_rays,
     topology,
 )
+from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.peers import hear, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps

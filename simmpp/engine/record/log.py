@@ -1,9 +1,10 @@
 """The event log: one row per arrival, and per message unpacked, computation and message packed.
 
 A PE does these one after the other, so its rows are the slices of its time; where there is none it
-is idle. So are those of its thread, if there is one: it serves (unpacks a message) and answers; what
-the PE receives then it takes over. A network card answers in no time. Rows are written when they begin, in the order of the engine's events, into a buffer that
-is handed on whenever it is full.
+is idle. So it is with its thread, if there is one: that serves (unpacks) and answers (packs), and
+what the PE receives then is taken over. A network card answers in no time. Rows are written when
+they begin, in the order of the engine's events, into a buffer that is handed on whenever it is
+full.
 """
 
 from __future__ import annotations
