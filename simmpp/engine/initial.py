@@ -8,9 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import njit
 from simmpp.common.randomness import key
-from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
 from simmpp.engine.arrays.records import (
     COPY,
@@ -21,10 +19,7 @@ from simmpp.engine.arrays.records import (
     PIGGYBACK,
     SAMPLED,
     SERVICE,
-    Run,
 )
-from simmpp.engine.arrays.views import pes, rays
-from simmpp.engine.pe.step import note_peaks
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -88,7 +83,7 @@ def new_state(
     scalars["random_key"] = key(seed, "policy")
     state = State(arrays, scalars | flags, recording.sink)
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
-    _deal(state.runs, placement.pixel_pes)
+    _deal(state, placement)
     if recording.counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
@@ -140,6 +135,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "object_bytes": workload.object_bytes,
         "test_ps": machine.test.of_objects(workload),
         "owners": placement.owners,
+        "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),
         "topology": network_of(topology),
         "free_ps": np.zeros(topology.n_links if machine.contention == LINKS else 0, np.int64),
@@ -226,20 +222,14 @@ def _of_the_policy(
     }
 
 
-@njit
-def _deal(runs: NDArray[np.void], pixel_pes: NDArray[np.int32]) -> None:
-    """Make primary rays ready on the PEs of their pixels, in pixel order."""
-    s: Run = runs[0]
-    for me in range(s.processors):
-        pes(s)[me].first = pes(s)[me].in_hand = NONE
-    for ray in range(pixel_pes.size):
-        pe = pes(s)[pixel_pes[ray]]
-        link(rays(s), pe, ray)
-        pe.n_ready += 1
-    for me in range(s.processors):
-        pe = pes(s)[me]
-        pe.load = pe.n_ready
-        pe.settled_load = pe.sampled_load = pe.n_ready
-        pe.peak_rays = pe.n_ready
-        note_peaks(s, pe)
-    s.rays_left = pixel_pes.size
+def _deal(state: State, placement: Placement) -> None:
+    """Give primary rays to the PEs of their pixels, in pixel order."""
+    n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
+    pes, ends = state.pes, np.cumsum(n_pixels)
+    pes["first"] = pes["in_hand"] = NONE
+    pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
+    for name in ("n_ready", "load", "settled_load", "sampled_load", "peak_rays"):
+        pes[name] = n_pixels
+    pes["peak_object_bytes"] = pes["held_bytes"]
+    pes["peak_bytes"] = pes["held_bytes"] + n_pixels * state["ray_bytes"]
+    state.runs["rays_left"] = len(placement.pixel_pes)

@@ -20,6 +20,7 @@ from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
     pes,
+    pixels,
     rays,
     test_ps,
 )
@@ -58,11 +59,11 @@ def _run_alone(
     totals: NDArray[np.void],
     homes: NDArray[np.int32],
     trees: NDArray[np.int32],
-    pixels: NDArray[np.int32],
+    roots: NDArray[np.int32],
 ) -> bool:
     """The same, with room for a total of each PE and what is noted of each pixel and ray."""
     s: Run = runs[0]
-    if not _add_up(s, totals, homes, trees, pixels):
+    if not _add_up(s, totals, homes, trees, roots):
         return False
     for me in range(s.processors):
         _pass_the_peak(s, me, totals[me].largest_tree)
@@ -80,30 +81,29 @@ def _add_up(
     totals: NDArray[np.void],
     homes: NDArray[np.int32],
     trees: NDArray[np.int32],
-    pixels: NDArray[np.int32],
+    roots: NDArray[np.int32],
 ) -> bool:
     """Fill (nb,) TOTALS; False as soon as an object is missing somewhere."""
     for me in range(s.processors):
         totals[me].last_ray = NONE
-        ray = pes(s)[me].first
-        while ray != NONE:
-            homes[ray], pixels[ray] = me, ray
-            if not _add_ray(s, totals[me], me, ray, pixels, trees):
+        for at in range(pes(s)[me].pixel, pes(s)[me].pixel_end):
+            ray = pixels(s)[at]
+            homes[ray], roots[ray] = me, ray
+            if not _add_ray(s, totals[me], me, ray, roots, trees):
                 return False
-            ray = rays(s)[ray].next
-    for ray in range(homes.size, pixels.size):
-        me = homes[pixels[ray]]
-        if not _add_ray(s, totals[me], me, ray, pixels, trees):
+    for ray in range(homes.size, roots.size):
+        me = homes[roots[ray]]
+        if not _add_ray(s, totals[me], me, ray, roots, trees):
             return False
     return True
 
 
 @kernel
 def _add_ray(
-    s: Run, total: Row, me: int, ray: int, pixels: NDArray[np.int32], trees: NDArray[np.int32]
+    s: Run, total: Row, me: int, ray: int, roots: NDArray[np.int32], trees: NDArray[np.int32]
 ) -> bool:
     """Add one ray to the total of its PE and to its tree; False if the PE lacks an object."""
-    offsets, objects, pixel = itinerary_offsets(s), itinerary_objects(s), pixels[ray]
+    offsets, objects, pixel = itinerary_offsets(s), itinerary_objects(s), roots[ray]
     cost_ps = s.ray_ps
     for i in range(offsets[ray], offsets[ray + 1]):
         obj = objects[i]
@@ -111,7 +111,7 @@ def _add_ray(
             return False
         cost_ps += test_ps(s)[obj]
     for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
-        pixels[child] = pixel
+        roots[child] = pixel
     if ray == pixel or not s.depth_first:
         total.last_ray = ray
     trees[pixel] += 1

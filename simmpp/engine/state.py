@@ -76,7 +76,7 @@ class State:
                 self._grow("log", 2 * len(self.arrays["log"]))
 
     def ensure_heap(self) -> None:
-        """See to it that the heap has a place for every message and an instant of all that works."""
+        """See to it that the heap has a place for every message and all that takes turns."""
         needed = len(self.messages) + len(self.arrays["processes"]) + 1
         if len(self.arrays["heap"]) < needed:
             self._grow("heap", needed)

@@ -33,17 +33,17 @@ So with ``nic`` an object is there, if the PE has nothing else to do then,
 after the decision. With contention both messages take ports and links as all do: the injection port
 of the owner is busy with the object for its bytes.
 
-An example, on two PEs one hop apart: latency 100, hop latency 30, header 4, request 8 and object 50
-bytes at 1 byte per unit of time, startups 10 to send and 20 to receive, nothing for copies. At 0 the
-PE decides, and the owner begins a quantum of 4000. The object is there at
+An example, on two PEs one hop apart: latency 100, hop latency 30, header 4, request 8, object 50
+bytes at 1 byte per unit of time, startups 10 to send and 20 to receive, copies for nothing. At 0
+the PE decides, and the owner begins a quantum of 4000. The object is there at
 
     pe      10 + 142 + (4000 - 152) + 20 + 10 + 184 + 20    = 4234
     thread  10 + 142 + 20 + 10 + 184 + 20 + handoff         = 386 + handoff
     nic     get_startup + 142 + 184 + completion            = 326 + both
 
 Sources: polling as in the paper, which ran on PVM; gets and puts of SHMEM and their 1 us (CSC, Cray
-T3E User's Guide, p. 62); a thread for messages as asynchronous renderers on clusters have (ESTIMATE:
-what it costs to take over what that has received).
+T3E User's Guide, p. 62); a thread for messages as asynchronous renderers on clusters have it
+(ESTIMATE: what taking over costs).
 """
 
 from __future__ import annotations

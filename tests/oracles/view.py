@@ -58,57 +58,73 @@ class Views(World):
             parameter=[*self.policy.numbers, *[0] * 8][:8],
             memory=pe.memory,
             random=random_draw(self.seed, pe) if draws else None,
+            finished=pe.finished,
+            busy_ps=pe.worked["compute"] + pe.worked["communication"],
+            compute_ps=pe.worked["compute"],
+            fetched=pe.fetched,
+            released=pe.released,
             **numbers(self.policy, self.workload.n_primaries, self.nb),
             **own,
         )
 
     def view_of_destination(
-        self, pe: PE, other: int, waiting: int, nothing_else: bool, draws: bool
+        self, pe: PE, other: int, groups: list[list[int]], nothing_else: bool, draws: bool
     ) -> View:
-        """What send is shown."""
-        view = self.view(pe, other, nothing_else, draws)
+        """What send is shown; the rays that may go are grouped by what they wait for."""
+        view, waiting = self.view(pe, other, nothing_else, draws), sum(map(len, groups))
         view.waiting, view.unasked = waiting, 0
+        self.show_fetches(view, pe, [self.next_object(rays[0]) for rays in groups])
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
         here = pe.number
         view.send_ps = sending(machine, here, other, RAYS) + packing(machine, RAYS, n_bytes)
-        receipt = receiving(machine, other, here, RAYS) + unpacking(machine, RAYS, n_bytes)
-        view.receive_ps, view.flight_ps = receipt, network_ps(machine, here, other, n_bytes)
-        self.with_thread(view)
+        view.receive_ps, by_thread_ps = self.taken_in(other, here, RAYS, n_bytes)
+        view.flight_ps = network_ps(machine, here, other, n_bytes) + by_thread_ps
         return view  # type: ignore[return-value]
-
-    def with_thread(self, view: SimpleNamespace) -> None:
-        """What a thread receives its PE takes over."""
-        if self.machine.service == "thread":
-            view.flight_ps += view.receive_ps
-            view.receive_ps = self.machine.handoff_ps
 
     def view_of_object(
         self, pe: PE, obj: int, unasked: int, nothing_else: bool, draws: bool
     ) -> View:
         """What ask is shown."""
-        owner, machine, n_bytes = self.owners[obj], self.machine, self.object_bytes[obj]
+        owner = self.owners[obj]
         view = self.view(pe, owner, nothing_else, draws)
-        view.object, view.owner, view.object_bytes = obj, owner, n_bytes
-        view.test_ps = intersection_ps(machine, self.workload, obj)
+        view.object, view.owner, view.object_bytes = obj, owner, self.object_bytes[obj]
+        view.test_ps = intersection_ps(self.machine, self.workload, obj)
         view.holders = sum(obj in each.resident for each in self.pes)
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]
-        asked, fetched = machine.request_bytes, n_bytes
-        here = pe.number
-        view.send_ps = sending(machine, here, owner, REQUEST) + packing(machine, REQUEST, asked)
-        receipt = receiving(machine, here, owner, OBJECT) + unpacking(machine, OBJECT, fetched)
-        there, back = (
-            network_ps(machine, here, owner, asked),
-            network_ps(machine, owner, here, fetched),
-        )
-        answering = receiving(machine, owner, here, REQUEST) + unpacking(machine, REQUEST, asked)
-        answering += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
-        view.receive_ps = receipt
-        view.flight_ps = there + back + (0 if machine.service == "nic" else answering)
-        self.with_thread(view)
+        view.send_ps, view.receive_ps, view.flight_ps = self.fetch_ps(pe, obj)
+        self.show_fetches(view, pe, [obj])
         return view  # type: ignore[return-value]
+
+    def show_fetches(self, view: SimpleNamespace, pe: PE, objects: list[int]) -> None:
+        """What fetching all of these objects would take."""
+        costs = [self.fetch_ps(pe, obj) for obj in objects]
+        view.objects = len(objects)
+        view.fetch_ps = sum(there + back for there, back, _ in costs)
+        view.fetch_flight_ps = sum(between for *_, between in costs)
+
+    def fetch_ps(self, pe: PE, obj: int) -> tuple[int, int, int]:
+        """Of a request, of the object, and of all that is in between."""
+        here, owner, machine = pe.number, self.owners[obj], self.machine
+        asked, fetched = machine.request_bytes, self.object_bytes[obj]
+        ask_ps = sending(machine, here, owner, REQUEST) + packing(machine, REQUEST, asked)
+        between_ps = network_ps(machine, here, owner, asked)
+        between_ps += network_ps(machine, owner, here, fetched)
+        if machine.service != "nic":
+            between_ps += receiving(machine, owner, here, REQUEST)
+            between_ps += unpacking(machine, REQUEST, asked)
+            between_ps += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
+        receive_ps, by_thread_ps = self.taken_in(here, owner, OBJECT, fetched)
+        return ask_ps, receive_ps, between_ps + by_thread_ps
+
+    def taken_in(self, pe: int, other: int, kind: int, n_bytes: int) -> tuple[int, int]:
+        """What receipt costs a PE, and what its thread does for it before."""
+        receipt = receiving(self.machine, pe, other, kind) + unpacking(self.machine, kind, n_bytes)
+        if self.machine.service == "thread":
+            return self.machine.handoff_ps, receipt
+        return receipt, 0
 
     def known_load(self, clock: int, pe: PE, other: int) -> tuple[int, int]:
         """What a PE knows of another's load, and for how long it has."""

@@ -86,6 +86,7 @@ class World:
 
     def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
         """Charge a PE; returns the time when it has paid."""
+        pe.paid[account] += cost
         return self.ledger.pay(account, pe.number, clock, cost)
 
     def send(
@@ -164,4 +165,8 @@ class World:
 
     def pinned(self, pe: PE) -> set[int]:
         """Fetched objects that are there for a test that is to be made."""
-        return {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
+        return {self.next_object(ray) for ray in pe.granted}
+
+    def next_object(self, ray: int) -> int:
+        """What a ray is to be tested against next."""
+        return self.itineraries[ray][self.positions[ray]]

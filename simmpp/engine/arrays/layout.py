@@ -98,6 +98,7 @@ ARRAYS = {
     "resident": Array(I1),
     "replica_offsets": Array(I8),
     "replica_objects": Array(I4),
+    "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row
     # of machine and policy
     "copy_costs": Array(COPY),
     "topology": Array(I8),  # as ``machine.topology`` reads it

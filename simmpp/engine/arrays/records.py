@@ -17,9 +17,9 @@ ITS_LOAD = -2
 
 PE = np.dtype(
     [
-        ("first", "i4"),  # list of ready rays, linked through RAY.next; NONE: empty
+        ("first", "i4"),  # list of started ready rays, linked through RAY.next; NONE: empty
         ("last", "i4"),
-        ("n_ready", "i8"),
+        ("n_ready", "i8"),  # those and its pixels that are not started
         ("load", "i8"),  # rays held: ready + waiting
         ("settled_load", "i8"),  # load at the end of the last ended activity
         ("sampled_load", "i8"),  # that load when all were last sampled
@@ -35,10 +35,16 @@ PE = np.dtype(
         ("transient_bytes", "i8"),  # of fetched objects that are kept
         ("n_transient", "i4"),
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
+        ("pixel", "i4"),  # where in ``pixels`` those that are not started begin,
+        ("pixel_end", "i4"),  # and end
+        ("cut", "i4"),  # 1: the first ready ray was cut by the quantum
         ("draws", "i8"),  # random numbers that its policy was given
         ("service_ps", "i8"),  # of its thread, which is busy until then:
         ("served_until_ps", "i8"),
         ("in_hand", "i4"),  # the message that its thread unpacks; NONE: none
+        ("finished", "i8"),  # rays that ended here
+        ("fetched", "i8"),  # objects that have come on request
+        ("released", "i8"),  # rays that these made ready
     ],
     align=True,
 )

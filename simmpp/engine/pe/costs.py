@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import BY_NIC, Run
+from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, PACK, UNPACK, Run
+from simmpp.engine.arrays.views import copy_costs
 from simmpp.machine.messages import LOAD, REQUEST
 from simmpp.machine.transfer import transfer_ps
 
@@ -28,3 +29,24 @@ def receiving_ps(s: Run, me: int, other: int, kind: int) -> int:
 def copy_ps(cost: Any, payload_bytes: int) -> int:
     """Packing or unpacking of one part: fixed + per byte of payload."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
+
+
+@kernel
+def sent_alone_ps(s: Run, me: int, other: int, kind: int, payload_bytes: int) -> int:
+    """What a PE pays for sending a message of one part."""
+    return sending_ps(s, me, other, kind) + copy_ps(copy_costs(s)[PACK + kind], payload_bytes)
+
+
+@kernel
+def received_alone_ps(s: Run, me: int, other: int, kind: int, payload_bytes: int) -> int:
+    """What a PE, or its thread, pays for receiving one."""
+    return receiving_ps(s, me, other, kind) + copy_ps(copy_costs(s)[UNPACK + kind], payload_bytes)
+
+
+@kernel
+def taken_in_ps(s: Run, me: int, other: int, kind: int, payload_bytes: int) -> tuple[int, int]:
+    """What the receipt of one costs a PE itself, and what its thread does for it before."""
+    receipt_ps = received_alone_ps(s, me, other, kind, payload_bytes)
+    if s.service == BY_THREAD:
+        return s.handoff_ps, receipt_ps
+    return receipt_ps, 0

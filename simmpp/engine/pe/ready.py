@@ -1,10 +1,15 @@
-"""Ready rays of a PE: a linked list that is filled at its front or at its back."""
+"""Ready rays of a PE: pixels that are not started, and a linked list of started rays.
+
+The list is filled at its front (depth-first) or at its back. A primary ray is not started until it
+is its turn: depth-first when no other is ready, breadth-first before all others but the one that
+the quantum has cut. So the pixels that a PE has left are a row of ``pixels``, however many.
+"""
 
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
-from simmpp.engine.arrays.views import child_offsets, pes, rays
+from simmpp.engine.arrays.views import child_offsets, pes, pixels, rays
 
 
 @kernel
@@ -14,7 +19,7 @@ def make_ready(s: Run, me: int, first: int, last: int, n: int) -> None:
     Depth-first puts the block before, breadth-first behind the rays that are ready already.
     """
     pe = pes(s)[me]
-    if pe.n_ready == 0:
+    if pe.first == NONE:
         pe.first, pe.last = first, last
         rays(s)[last].next = NONE
     elif s.depth_first:
@@ -25,6 +30,21 @@ def make_ready(s: Run, me: int, first: int, last: int, n: int) -> None:
         rays(s)[last].next = NONE
         pe.last = last
     pe.n_ready += n
+
+
+@kernel
+def next_ready(s: Run, me: int) -> int:
+    """The ready ray whose turn it is, at the front of the list; there must be one."""
+    pe = pes(s)[me]
+    if pe.pixel < pe.pixel_end and (pe.first == NONE or not (s.depth_first or pe.cut)):
+        ray = pixels(s)[pe.pixel]
+        pe.pixel += 1
+        rays(s)[ray].next = pe.first
+        if pe.first == NONE:
+            pe.last = ray
+        pe.first = ray
+    pe.cut = 0
+    return pe.first
 
 
 @kernel
@@ -48,6 +68,7 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     # The ray itself leaves; what it has hit brings forth its children here, whoever owns it.
     pe.load += end - child - 1
     pe.peak_rays = max(pe.peak_rays, pe.load)
+    pe.finished += 1
     s.rays_done += 1
     s.rays_left += end - child - 1
     s.last_ray_ps = max(s.last_ray_ps, now_ps)

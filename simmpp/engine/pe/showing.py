@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, NONE, PACK, UNPACK, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
-    copy_costs,
     holder_offsets,
     miss_rows,
     object_bytes,
@@ -18,12 +17,12 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.costs import sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.peers import age_ps, known_load
-from simmpp.machine.messages import OBJECT as OBJECT_MESSAGE
-from simmpp.machine.messages import RAYS, REQUEST
+from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
+from simmpp.machine.messages import RAYS
 from simmpp.machine.topology import hops
-from simmpp.policy.view import LOADS, OBJECT, RANDOM, SELF, WAY, View
+from simmpp.policy.view import DONE, LOADS, OBJECT, RANDOM, SELF, WANTED, WAY, View
 
 
 @kernel
@@ -49,10 +48,11 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        view.send_ps = _sending_ps(s, me, other, RAYS, n_bytes)
-        view.receive_ps = _receiving_ps(s, other, me, RAYS, n_bytes)
-        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
-        _leave_to_thread(s, view)
+        view.send_ps = sent_alone_ps(s, me, other, RAYS, n_bytes)
+        view.receive_ps, by_thread_ps = taken_in_ps(s, other, me, RAYS, n_bytes)
+        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes) + by_thread_ps
+    if s.send_reads & WANTED:
+        show_wanted(s, view, me, peer_row)
     _show_self(s, view, me, now_ps, s.send_reads)
 
 
@@ -74,40 +74,10 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
         view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
     if reads & WAY:
         view.hops = hops(topology(s), me, other)
-        _show_fetch(s, view, me, other, object_bytes(s)[obj])
+        view.send_ps, view.receive_ps, view.flight_ps = fetch_ps(s, me, obj)
+    if reads & WANTED:
+        show_fetch(s, view, me, obj)
     _show_self(s, view, me, now_ps, reads)
-
-
-@kernel
-def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
-    """What a fetch costs the PE, and how long it takes besides."""
-    request_bytes = s.request_bytes
-    view.send_ps = _sending_ps(s, me, owner, REQUEST, request_bytes)
-    view.receive_ps = _receiving_ps(s, me, owner, OBJECT_MESSAGE, n_bytes)
-    view.flight_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
-    view.flight_ps += flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    if s.service != BY_NIC:
-        view.flight_ps += _receiving_ps(s, owner, me, REQUEST, request_bytes)
-        view.flight_ps += _sending_ps(s, owner, me, OBJECT_MESSAGE, n_bytes)
-    _leave_to_thread(s, view)
-
-
-@kernel
-def _leave_to_thread(s: Run, view: View) -> None:
-    """Where a thread receives, the PE takes over what was received on the way."""
-    if s.service == BY_THREAD:
-        view.flight_ps += view.receive_ps
-        view.receive_ps = s.handoff_ps
-
-
-@kernel
-def _sending_ps(s: Run, me: int, other: int, kind: int, n_bytes: int) -> int:
-    return sending_ps(s, me, other, kind) + copy_ps(copy_costs(s)[PACK + kind], n_bytes)
-
-
-@kernel
-def _receiving_ps(s: Run, me: int, other: int, kind: int, n_bytes: int) -> int:
-    return receiving_ps(s, me, other, kind) + copy_ps(copy_costs(s)[UNPACK + kind], n_bytes)
 
 
 @kernel
@@ -124,6 +94,9 @@ def _show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
     if groups & SELF:
         view.now_ps, view.me = now_ps, me
         view.ready, view.held_bytes = pe.n_ready, pe.held_bytes
+    if groups & DONE:
+        view.finished, view.fetched, view.released = pe.finished, pe.fetched, pe.released
+        view.busy_ps, view.compute_ps = pe.compute_ps + pe.communication_ps, pe.compute_ps
     if groups & RANDOM:
         pe.draws += 1
         view.random = philox(s.random_key, me, pe.draws)

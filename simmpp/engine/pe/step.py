@@ -38,7 +38,7 @@ from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
 from simmpp.engine.pe.peers import hear, sample_loads
-from simmpp.engine.pe.ready import finish_ray, make_ready, pop_ready
+from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
@@ -174,7 +174,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     pe.received_load = 0
     tests, done = 0, s.rays_done
     while tests < s.quantum and pe.n_ready > 0:
-        ray = pe.first
+        ray = next_ready(s, me)
         first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
         while first + rays(s)[ray].tested < end:
             obj = itinerary_objects(s)[first + rays(s)[ray].tested]
@@ -186,6 +186,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             # Only here: a ray that fills the quantum still leaves if it is done or lacks an
             # object, as neither costs a test.
             if tests == s.quantum:
+                pe.cut = 1
                 break
             clock_ps += test_ps(s)[obj]
             _test(s, me, ray, obj, clock_ps)
