@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from builders import Case
-from oracles.ledger import Activity, Outcome, Slice, in_order
+from oracles.ledger import Activity, Outcome, Slice, in_order, who
 from oracles.machine import simulate as simulate_slowly
 
 from simmpp.engine.record.log import EVENT_KINDS
@@ -51,7 +51,7 @@ def outcome_of(result: Result) -> Outcome:
             arrivals.append((time_ps, r["pe"], *sent))
         else:
             slices.append(Slice(begin=time_ps, what=event, end=r.pop("end_ps"), **r))
-    slices.sort(key=lambda s: s.pe)
+    slices.sort(key=who)
     tested_rays = [] if result.tested_rays is None else result.tested_rays.tolist()
     tested_objects = [] if result.tested_objects is None else result.tested_objects.tolist()
     return Outcome(

@@ -43,6 +43,11 @@ def in_order(activities: list[Activity]) -> list[Activity]:
     return sorted(activities, key=lambda row: (*row[:2], row[2].startswith("serve")))
 
 
+def who(row: Slice) -> tuple[int, bool]:
+    """A PE, or what serves beside it: what one of them did is in the order of time."""
+    return row.pe, row.what in ("serve", "answer")
+
+
 @dataclass
 class Outcome:
     """Everything that a run gives back; a list has one entry per PE."""
@@ -70,7 +75,7 @@ class Outcome:
     activities: list[Activity]
     """(begin, PE, "receive <kind>", "compute" or "serve <kind>", end, tests)."""
     slices: list[Slice]
-    """Every message unpacked or packed and every computation, those of a PE one after another."""
+    """Every message unpacked or packed and every computation, by ``who``, one after another."""
     tested: list[tuple[int, int]]
     """(ray, object) in the order performed: by the beginnings of the computes."""
     ray_hops: list[int]
@@ -135,7 +140,7 @@ class Ledger:
         late = [s._replace(end=end) for s in kept]
         late = [s._replace(number=-1) if s.what in ("send", "answer") else s for s in late]
         found = [s if s.end <= end else short for s, short in zip(kept, late, strict=True)]
-        return sorted(found, key=lambda s: s.pe)
+        return sorted(found, key=who)
 
     def account(self, name: str, pe: int) -> int:
         """Time of a PE in an account, clipped at the makespan."""

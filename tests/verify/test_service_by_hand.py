@@ -1,7 +1,7 @@
 """A thread or a network card that serves: times worked out by hand on the machine of ``by_hand``.
 
-PE 0 needs object 1 (50 bytes), and PE 1, whose it is, begins a quantum of four tests at 0 that lasts
-until 1 + 4 x 1500 = 6001. PE 0 sees at 1, after a probe, that it has to ask.
+PE 0 needs object 1 (50 bytes), and PE 1, whose it is, begins a quantum of four tests at 0 that
+lasts until 1 + 4 x 1500 = 6001. PE 0 sees at 1, after a probe, that it has to ask.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from builders import Case
 from by_hand import NEVER_SENDS, OBJECT, RAY, activities_of, case_of
 from implementations import IMPLEMENTATIONS, run
 
