@@ -35,9 +35,10 @@ class Serving(Dispatch):
         """The network card sends an object, or the load in 8 bytes, without its PE."""
         self.ledger.received += 1
         (part,) = get.parts
-        answer = Part(OBJECT, self.object_bytes[part.obj], part.obj)
         if part.obj == WHOSE_LOAD:
             answer = Part(LOAD, 8)
+        else:
+            answer = Part(OBJECT, self.object_bytes[part.obj], part.obj)
         back = Message(pe.number, get.source, pe.sends, (answer,), pe.ended_load, time)
         pe.sends += 1
         self.ledger.sent.append(back)
