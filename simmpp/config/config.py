@@ -216,9 +216,9 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
         raise misplaced(key, error.problem, point.places) from None
     method = point.settings.method
     other = {"topology": TORUS, "service": POLLED}
-    for key, known in other.items() if METHODS[method].knows_polled_torus_alone else ():
-        if (value := getattr(machine, key)) != known:
-            problem = f"value {method!r}: expected {SIMULATE} where the {key} is {value}"
+    for choice, known in other.items() if METHODS[method].knows_polled_torus_alone else ():
+        if (value := getattr(machine, choice)) != known:
+            problem = f"value {method!r}: expected {SIMULATE} where the {choice} is {value}"
             raise misplaced(("method",), problem, point.places)
     return point
 
