@@ -71,8 +71,11 @@ def fixed_costs(constants: Mapping[str, Any]) -> tuple[tuple[int, ...], tuple[in
     """Of each kind of message, and of each kind of part: what both PEs pay whatever its size.
 
     ``constants`` are the fields of a machine, as records have them; older ones have no service.
+    Startups of levels are those of the outermost.
     """
-    send_ps, receive_ps = constants["send_startup_ps"], constants["receive_startup_ps"]
+    names = ("send_startup_ps", "receive_startup_ps")
+    outermost = levels[-1] if (levels := constants.get("levels")) else constants
+    send_ps, receive_ps = (outermost.get(name, constants[name]) for name in names)
     pack, unpack = ([of["fixed_ps"] for of in constants[name]] for name in ("pack", "unpack"))
     startups = [send_ps + receive_ps] * len(pack)
     fixed = [sum(both) for both in zip(pack, unpack, strict=True)]

@@ -4,7 +4,7 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 
 - *compute*: tests and rays. That is the bound, which no way of sending messages changes.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
-  unpacking included; with a thread, what they cost the PEs themselves.
+  unpacking included; between levels those of the outermost, with a thread what the PEs pay.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
@@ -53,7 +53,7 @@ class MessageCosts:
     """What limits need of a machine."""
 
     startups_ps: tuple[int, ...]
-    """Of both PEs, for each kind of message."""
+    """Of both PEs, for each kind of message; of levels those of the outermost."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import floor
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
-from simmpp.machine.messages import LOAD, RAYS, REQUEST
+from simmpp.machine.messages import RAYS
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
@@ -34,18 +34,6 @@ def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
 
 
-def sending(machine: Machine, pe: int, other: int, kind: int) -> int:
-    """What a PE pays for a message besides packing it; the kind is that of its first part."""
-    if machine.service == "nic" and kind in (REQUEST, LOAD):
-        return machine.get_startup_ps
-    return machine.send_startup_ps
-
-
-def receiving(machine: Machine, pe: int, other: int, kind: int) -> int:
-    """What a PE, or its thread, pays for a message from another, besides unpacking it."""
-    return machine.completion_ps if machine.service == "nic" else machine.receive_startup_ps
-
-
 def packing(machine: Machine, kind: int, payload_bytes: int) -> int:
     """Time to pack a part of a message; what is got, and getting it, needs none."""
     is_free = machine.service == "nic" and kind != RAYS
@@ -68,6 +56,9 @@ def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:
         POLYGON: test.polygon_ps,
         MESH: test.mesh_ps,
     }[kind]
+    if test.log2_ps:
+        depth = next(k for k in range(64) if 2**k >= triangles)
+        return base + test.log2_ps * depth
     return base + test.per_triangle_ps * max(triangles - 1, 0)
 
 

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from oracles.costs import intersection_ps, packing, receiving, sending, unpacking
-from oracles.network import distance, network_ps
+from oracles.costs import intersection_ps, packing, unpacking
+from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE
 from oracles.world import World
 from simmpp.common.randomness import key
@@ -113,7 +113,7 @@ class Views(World):
         between_ps = network_ps(machine, here, owner, asked)
         between_ps += network_ps(machine, owner, here, fetched)
         if machine.service != "nic":
-            between_ps += receiving(machine, owner, here, REQUEST)
+            between_ps += receiving(machine, owner, here)
             between_ps += unpacking(machine, REQUEST, asked)
             between_ps += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
         receive_ps, by_thread_ps = self.taken_in(here, owner, OBJECT, fetched)
@@ -121,7 +121,7 @@ class Views(World):
 
     def taken_in(self, pe: int, other: int, kind: int, n_bytes: int) -> tuple[int, int]:
         """What receipt costs a PE, and what its thread does for it before."""
-        receipt = receiving(self.machine, pe, other, kind) + unpacking(self.machine, kind, n_bytes)
+        receipt = receiving(self.machine, pe, other) + unpacking(self.machine, kind, n_bytes)
         if self.machine.service == "thread":
             return self.machine.handoff_ps, receipt
         return receipt, 0

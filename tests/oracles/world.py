@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from oracles.costs import Stage, packing, receiving, sending, unpacking
+from oracles.costs import Stage, packing, unpacking
 from oracles.ledger import Ledger
-from oracles.network import Network, network_ps
+from oracles.network import Network, network_ps, receiving, sending
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -126,7 +126,7 @@ class World:
 
     def unpacking(self, pe: PE, message: Message) -> int:
         """What a message costs who receives it."""
-        cost = receiving(self.machine, pe.number, message.source, message.kind)
+        cost = receiving(self.machine, pe.number, message.source)
         parts = message.parts
         return cost + sum(unpacking(self.machine, p.kind, p.payload_bytes) for p in parts)
 

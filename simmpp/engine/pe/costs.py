@@ -1,4 +1,4 @@
-"""What a message costs a PE: a startup at each end, and packing and unpacking."""
+"""What messages cost their PEs: startups, packing and unpacking."""
 
 from __future__ import annotations
 
@@ -6,23 +6,26 @@ from typing import Any
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, PACK, UNPACK, Run
-from simmpp.engine.arrays.views import copy_costs
+from simmpp.engine.arrays.views import copy_costs, topology
 from simmpp.machine.messages import LOAD, REQUEST
+from simmpp.machine.topology import receive_startup_ps, send_startup_ps
 from simmpp.machine.transfer import transfer_ps
 
 
 @kernel
 def sending_ps(s: Run, me: int, other: int, kind: int) -> int:
-    """What a PE pays for sending a message whose first part is of that kind, besides packing."""
+    """Startup of a message from ``me`` to another PE, by the kind of its first part."""
     if s.service == BY_NIC and kind in (REQUEST, LOAD):
         return s.get_startup_ps
-    return s.send_startup_ps
+    return send_startup_ps(topology(s), me, other, s.send_startup_ps)
 
 
 @kernel
 def receiving_ps(s: Run, me: int, other: int, kind: int) -> int:
-    """What PE ``me``, or its thread, pays for receiving one from ``other``, besides unpacking."""
-    return s.completion_ps if s.service == BY_NIC else s.receive_startup_ps
+    """Startup of the receipt by ``me``, or its thread, of a message from another PE."""
+    if s.service == BY_NIC:
+        return s.completion_ps
+    return receive_startup_ps(topology(s), other, me, s.receive_startup_ps)
 
 
 @kernel
