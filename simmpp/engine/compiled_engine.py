@@ -10,14 +10,22 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.records import BY_THREAD, NONE, Row, Run
+from simmpp.engine.arrays.records import BY_THREAD, NONE, SLEEP, WOKEN, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
-from simmpp.engine.event_heap import HEAD, INSTANT, PE_BITS, pop, push, replace_first
+from simmpp.engine.event_heap import (
+    HEAD,
+    INSTANT,
+    PE_BITS,
+    heap_lacks_room,
+    pop,
+    push,
+    replace_first,
+)
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.gets import is_get, send_back
 from simmpp.engine.pe.serving import serve
-from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking, starved
 
@@ -56,7 +64,8 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = ("logs", "record_tests", "record_counters")
-        if any(self.state[name] for name in records) or not run_alone(self.state.runs):
+        talks = self.state["idle"] != 0  # PEs that have nothing to do may have something to say
+        if talks or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
             self._progress(0)
@@ -83,11 +92,12 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
             return FINISHED if s.rays_left == 0 else STARVED
         event = heap(s)[0]
         time_ps, rank, message = event.time_ps, event.rank, event.message
+        number = event.number
         # Not at once: messages that arrive until the last ray's end are counted.
         if s.rays_left == 0 and time_ps >= s.last_ray_ps:
             return FINISHED
         # Looked at before the event is taken, so that it is handled when there is room.
-        if room_lacking(s):
+        if room_lacking(s) or heap_lacks_room(s):
             return FULL
         if rank >= HEAD:
             move_first(s)
@@ -95,6 +105,8 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         pop(s)
         if message != NONE:
             _arrive(s, message, time_ps)
+        elif number != processes(s)[rank - INSTANT].instants:
+            s.n_stale -= 1  # of a sleeper whom a message has woken before
         elif rank - INSTANT < s.processors:
             _step(s, rank - INSTANT, time_ps)
         else:
@@ -125,6 +137,8 @@ def _deliver(s: Run, message: int, me: int, now_ps: int) -> None:
     link(messages(s), process, message)
     if process.asleep:
         process.asleep = 0
+        if process.phase == WOKEN:
+            s.n_stale += 1
         _schedule_instant(s, me, now_ps)
 
 
@@ -161,9 +175,8 @@ def _go_on(s: Run, me: int, next_ps: int) -> None:
     """What a PE or thread has sent travels; its next instant comes, or it sleeps."""
     for i in range(s.n_sent):
         _travel(s, outbox(s)[i])
-    if next_ps == SLEEP:
-        processes(s)[me].asleep = 1
-    else:
+    processes(s)[me].asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
+    if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
 
 

@@ -19,12 +19,21 @@ from simpy.events import Event
 
 from simmpp.common.compiled import entry_point, njit
 from simmpp.common.errors import ModelError
-from simmpp.engine.arrays.records import BEGIN, BY_NIC, BY_THREAD, MESSAGE, NONE, Run
+from simmpp.engine.arrays.records import (
+    BEGIN,
+    BY_NIC,
+    BY_THREAD,
+    MESSAGE,
+    NONE,
+    SLEEP,
+    WOKEN,
+    Run,
+)
 from simmpp.engine.arrays.views import messages
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.gets import is_get, send_back
 from simmpp.engine.pe.serving import serve
-from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, starved
 
@@ -131,7 +140,7 @@ class SimpyRun:
                 self._carry(n_sent)
             if runs["rays_left"][0] == 0 and not self._ending:
                 self._finish()
-            yield self._next(me, next_ps)
+            yield self._next(me, next_ps, wakes=phase == WOKEN)
 
     def _thread(self, me: int) -> Generator[Event, None, None]:
         """What receives for a PE: asleep until there is something."""
@@ -151,12 +160,15 @@ class SimpyRun:
             self._carry(n_sent)
             yield self._next(pes + me, next_ps)
 
-    def _next(self, me: int, next_ps: int) -> Event:
-        """The next instant of a PE or thread, or what will wake it."""
-        if next_ps == SLEEP:
-            self._asleep[me] = asleep = _happened(self._environment)
-            return asleep
-        return self._instant(me, next_ps - self._environment.now)
+    def _next(self, me: int, next_ps: int, *, wakes: bool = False) -> Event:
+        """The next instant of a PE or thread, or what will wake it; that may be the time itself."""
+        delay_ps = next_ps - self._environment.now
+        if next_ps != SLEEP and not wakes:
+            return self._instant(me, delay_ps)
+        self._asleep[me] = asleep = _happened(self._environment)
+        if wakes:
+            self._schedule_waking(me, delay_ps)
+        return asleep
 
     def _instant(self, me: int, delay_ps: int) -> Event:
         """The next instant of a PE or thread."""
@@ -166,8 +178,26 @@ class SimpyRun:
 
     def _schedule_instant(self, me: int, event: Event, delay_ps: int) -> None:
         self._numbers[me] += 1
-        priority = (1 << 64 | me) << 64 | self._numbers[me]
-        self._environment.schedule(event, priority, delay_ps)
+        self._environment.schedule(event, self._priority(me), delay_ps)
+
+    def _priority(self, me: int) -> int:
+        """Of the instant of a PE that was scheduled last."""
+        return (1 << 64 | me) << 64 | self._numbers[me]
+
+    def _schedule_waking(self, me: int, delay_ps: int) -> None:
+        """An instant at which a sleeping PE is woken, unless a message wakes it before."""
+        waking = _happened(self._environment)
+        self._schedule_instant(me, waking, delay_ps)
+        waking._value = me, self._numbers[me]
+        waking.callbacks.append(self._wake)
+
+    def _wake(self, waking: Event) -> None:
+        """Now is the time: in this very instant, before all else, the PE goes on."""
+        me, number = waking.value
+        asleep = self._asleep[me]
+        if asleep is not None and number == self._numbers[me]:
+            self._asleep[me] = None
+            self._environment.schedule(asleep, self._priority(me), 0)
 
     def _carry(self, n_sent: int) -> None:
         """Messages of the outbox travel; with contention from one port or link to the next."""

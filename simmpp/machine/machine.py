@@ -221,6 +221,11 @@ class Machine:
         return startups_ps + self.probe_ps + one_sided_ps
 
     @property
+    def uses(self) -> tuple[str, ...]:
+        """What its rows have columns of their own for."""
+        return ("threads",) if self.service == THREAD else ()
+
+    @property
     def processors(self) -> int:
         """Number of PEs, nb in the paper."""
         x, y, z = self.shape

@@ -51,20 +51,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from simmpp.machine.machine import NIC, THREAD, Copies, CopyCost, Machine
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.machine import NIC, THREAD, CopyCost, Machine
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER_COPIED_AS
 
 LOAD_BYTES = 8
 """Of a load that is got: one 64-bit word."""
 
 
-def copies(machine: Machine) -> tuple[Copies, Copies]:
+def copies(machine: Machine) -> tuple[list[CopyCost], list[CopyCost]]:
     """What a PE, or its thread, pays for packing each kind of message, and for unpacking it."""
-    pack, unpack = list(machine.pack), list(machine.unpack)
+    pack, unpack = ([*of, of[USER_COPIED_AS]] for of in (machine.pack, machine.unpack))
     if machine.service == NIC:
         for kind in (REQUEST, OBJECT, LOAD):
             pack[kind] = unpack[kind] = CopyCost()
-    return (pack[0], pack[1], pack[2], pack[3]), (unpack[0], unpack[1], unpack[2], unpack[3])
+    return pack, unpack
 
 
 def fixed_costs(constants: Mapping[str, Any]) -> tuple[tuple[int, ...], tuple[int, ...]]:

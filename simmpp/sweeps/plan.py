@@ -17,7 +17,6 @@ from simmpp.common.places import misplaced
 from simmpp.config.axes import POINTS, SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
-from simmpp.machine.machine import THREAD
 from simmpp.methods.columns import KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
@@ -62,10 +61,10 @@ class Plan:
     @cached_property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
-        packs = any(planned.point.policy.packs for planned in self.points)
-        layers = (planned.point.config.layers for planned in self.points)
-        threads = any(each.words["service"] == THREAD for each in layers)
-        return result_columns(self.further, packs=packs, threads=threads)
+        uses = {use for planned in self.points for use in planned.point.policy.uses}
+        configs = (planned.point.config for planned in self.points)
+        uses |= {use for c in configs for use in c.machine_for(c.processors).uses}
+        return result_columns(self.further, uses)
 
     @property
     def tasks(self) -> list[Task]:

@@ -17,7 +17,7 @@ from oracles.network import distance
 from oracles.serving import Serving
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import names_in
@@ -38,6 +38,8 @@ class Simulation(Serving):
             "take": self.take,
             "serve": self.serve,
             "served": self.served,
+            "rest": self.rest,
+            "wake": self.wake,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -62,7 +64,7 @@ class Simulation(Serving):
             n_tests = len(self.ledger.tested) - tests_before
             self.ledger.open[pe.number] = (time, "compute", n_tests)
         else:
-            pe.asleep = True
+            self.fall_asleep(time, pe)
             return
         self.sample_bytes(pe)
         self.schedule(work_end, pe, "dispatch")
@@ -74,7 +76,9 @@ class Simulation(Serving):
         else:
             clock = self.pay("communication", pe, time, self.unpacking(pe, message))
             self.ledger.received += 1
-            self.hear(clock, pe, message)
+            self.hear_load(clock, pe, message)
+        if message.carries:
+            self.get_on(pe)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -88,6 +92,8 @@ class Simulation(Serving):
         if wanted and self.machine.service == "pe":
             answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
             clock = self.send(clock, pe, message.source, answer)
+        if message.count(USER):
+            clock = self.hear(clock, pe, message)
         self.sample_rays(pe)
         return clock
 
@@ -141,6 +147,7 @@ class Simulation(Serving):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
+        self.get_on(pe)
         clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
         self.positions[ray] += 1
         was_granted = ray in pe.granted
@@ -166,6 +173,7 @@ class Simulation(Serving):
         """A ray is shaded and leaves its children here."""
         clock = self.pay("compute", pe, clock, self.machine.ray_ps)
         self.ledger.finished_ps.append(clock)
+        self.get_on(pe)
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]
         pe.ready.remove(ray)
@@ -179,7 +187,8 @@ class Simulation(Serving):
         self.sample_loads(time)
         messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
-        self.ledger.end_activity(pe.number, clock)
+        if pe.number in self.ledger.open:  # not when it was woken
+            self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:
             self.schedule(clock, pe, "begin")
         else:

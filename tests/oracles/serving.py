@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from oracles.dispatch import Dispatch
 from oracles.state import PE, WHOSE_LOAD, Message, Part
+from oracles.talking import Talking
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, REQUEST
 
 
-class Serving(Dispatch):
+class Serving(Talking):
     """What becomes of a message that has arrived, until its PE receives it or takes it over."""
 
     def arrive(self, time: int, message: Message) -> None:
@@ -62,7 +62,7 @@ class Serving(Dispatch):
         """The thread has unpacked a message: it hears the load, hands over, answers, goes on."""
         message = pe.in_hand
         assert message is not None
-        self.hear(time, pe, message)
+        self.hear_load(time, pe, message)
         wanted = [part.obj for part in message.parts if part.kind == REQUEST]
         end = time
         if wanted:
@@ -76,7 +76,7 @@ class Serving(Dispatch):
         else:
             self.serve(end, pe)
 
-    def hear(self, clock: int, pe: PE, message: Message) -> None:
+    def hear_load(self, clock: int, pe: PE, message: Message) -> None:
         """What a header tells, and that rays or objects came from there."""
         if not (self.machine.service == "nic" and message.count(OBJECT)):
             pe.known_load[message.source] = message.load

@@ -62,7 +62,7 @@ def note_exchange(s: Run, me: int, peer_row: int) -> None:
 
 
 @kernel
-def hear(s: Run, me: int, m: Row, now_ps: int) -> None:
+def hear_load(s: Run, me: int, m: Row, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
     if s.listens:
         peer_row = peer_of(s, me, m.source)

@@ -32,13 +32,15 @@ from simmpp.engine.arrays.views import (
     sent_by_kind,
     sort_items,
     sort_keys,
+    user_words,
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.costs import copy_ps, sending_ps
 from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
+from simmpp.policy.view import View
 
 
 @kernel
@@ -78,6 +80,15 @@ def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
     row = _new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
     if s.service == BY_NIC:
         messages(s)[row].obj = ITS_LOAD
+    return _send(s, me, row, now_ps)
+
+
+@kernel
+def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
+    """Send a message of the policy's own: the words that it has left in its view."""
+    row = _new_part(s, USER, other, USER_WORDS * WORD_BYTES)
+    for i in range(USER_WORDS):
+        user_words(s)[USER_WORDS * row + i] = view.words[i]
     return _send(s, me, row, now_ps)
 
 

@@ -8,11 +8,11 @@ takes it over as it would receive it (``step.receive``).
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import NONE, Run
+from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, Run
 from simmpp.engine.arrays.views import messages, pes
-from simmpp.engine.pe.peers import hear
+from simmpp.engine.pe.peers import hear_load
 from simmpp.engine.pe.sending import answer_to, forget, pack
-from simmpp.engine.pe.step import SLEEP, unpacking_ps
+from simmpp.engine.pe.step import unpacking_ps
 from simmpp.engine.record.counters import count_message
 from simmpp.engine.record.log import note_answer, note_serve
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -27,7 +27,7 @@ def serve(s: Run, me: int, message: int, now_ps: int) -> int:
     record's REPORT fields then hold whether the message was consumed, the number of messages in the
     outbox, and the message that is handed over, or NONE.
     """
-    s.consumed, s.n_sent, s.handed = 0, 0, NONE
+    s.phase, s.consumed, s.n_sent, s.handed = BEGIN, 0, 0, NONE
     pe = pes(s)[me]
     end_ps = now_ps
     if pe.in_hand != NONE:
@@ -62,7 +62,7 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
 def _finish(s: Run, me: int, message: int, now_ps: int) -> int:
     """A message is unpacked: hear the load, answer, hand over; returns the end of that."""
     m = messages(s)[message]
-    hear(s, me, m, now_ps)
+    hear_load(s, me, m, now_ps)
     end_ps = now_ps
     answer = answer_to(s, message)
     if answer != NONE:

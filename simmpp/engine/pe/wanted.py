@@ -8,12 +8,12 @@ from simmpp.engine.arrays.records import BY_NIC, Run
 from simmpp.engine.arrays.views import (
     miss_rows,
     object_bytes,
-    owners,
     peer_rows,
     sendable,
 )
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import received_alone_ps, sent_alone_ps, taken_in_ps
+from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import is_holder
 from simmpp.machine.messages import OBJECT, REQUEST
 from simmpp.policy.view import View
@@ -22,7 +22,7 @@ from simmpp.policy.view import View
 @kernel
 def fetch_ps(s: Run, me: int, obj: int) -> tuple[int, int, int]:
     """What sending the request costs, what receiving the object, and the time in between."""
-    asked, owner, n_bytes = s.request_bytes, owners(s)[obj], object_bytes(s)[obj]
+    asked, owner, n_bytes = s.request_bytes, owner_of(s, me, obj), object_bytes(s)[obj]
     send_ps = sent_alone_ps(s, me, owner, REQUEST, asked)
     receive_ps, between_ps = taken_in_ps(s, me, owner, OBJECT, n_bytes)
     between_ps += flight_ps(s, me, owner, asked + s.header_bytes)
