@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,18 @@ def placement_of(
         transient=transient,
         pixel_pes=np.array(pixel_pes, np.int32),
     )
+
+
+def on_islands(placement: Placement, islands: int) -> Placement:
+    """The same with that many islands: of PEs at one place in each, one owns what they all did."""
+    island = placement.processors // islands
+    owners = placement.owners % island
+    offsets, objects = placement.replica_offsets, placement.replica_objects
+    rows = [objects[i:j] for i, j in pairwise(offsets.tolist())]
+    replicas = [row[owners[row] != k % island].tolist() for k, row in enumerate(rows)]
+    pixel_pes, transient = placement.pixel_pes.tolist(), placement.transient
+    again = placement_of(owners.tolist(), pixel_pes, placement.processors, replicas, transient)
+    return replace(again, islands=islands)
 
 
 def everywhere(placement: Placement) -> Placement:
@@ -255,9 +268,37 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
             bytes_per_s=int(_pick(rng, rates)),
             gap_ps=int(_pick(rng, times)),
             ports=int(rng.integers(1, 4)) if n > 0 else 1,
+            send_startup_ps=int(_pick(rng, times)),
+            receive_startup_ps=int(_pick(rng, times)),
         )
         for n in (*inside, len(inside))
     )
+
+
+def served(case: Case, service: str, seed: int) -> Case:
+    """The case where another serves, at costs of the same kind, from a stream of its own."""
+    rng, machine = np.random.default_rng((seed, 4)), case.machine
+    costs = (0, machine.latency_ps, machine.send_startup_ps, machine.probe_ps)
+    handoff_ps, get_startup_ps, completion_ps = (int(_pick(rng, costs)) for _ in range(3))
+    machine = replace(
+        machine,
+        service=service,
+        handoff_ps=handoff_ps,
+        get_startup_ps=get_startup_ps,
+        completion_ps=completion_ps,
+    )
+    return replace(case, machine=machine)
+
+
+def with_costs_of_today(machine: Machine, seed: int) -> Machine:
+    """The machine, in some cases with parts that have a tree of their own.
+
+    Draws from a stream of its own, too.
+    """
+    rng = np.random.default_rng((seed, 19))
+    if rng.random() < 0.3:
+        machine = replace(machine, test=replace(machine.test, log2_ps=machine.latency_ps))
+    return machine
 
 
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
@@ -313,8 +354,16 @@ def random_case(seed: int) -> Case:
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
-    machine = on_some_network(machine, seed)
+    machine = with_costs_of_today(on_some_network(machine, seed), seed)
+    placement = on_islands(placement, _some_islands(machine.processors, seed))
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def _some_islands(processors: int, seed: int) -> int:
+    """Two thirds of the machines are whole; draws from a stream of its own."""
+    rng = np.random.default_rng((seed, 16))
+    numbers = [n for n in range(1, processors + 1) if processors % n == 0]
+    return int(_pick(rng, (1, 1, _pick(rng, numbers))))
 
 
 def on_torus(case: Case) -> Case:

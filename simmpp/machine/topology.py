@@ -17,7 +17,7 @@ from simmpp.common.compiled import kernel
 from simmpp.common.errors import ConfigError
 from simmpp.common.validate import require_word
 from simmpp.machine import fat_tree, levels, torus
-from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Machine
+from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Machine
 
 Network = NDArray[np.int64]
 """A topology as compiled code gets it: (n,) int64, its number in TOPOLOGIES and its own numbers."""
@@ -74,10 +74,11 @@ def topology_of(machine: Machine) -> Topology:
 
 
 def require_torus(machine: Machine) -> None:
-    """Raise ConfigError for what the analytical model does not know."""
-    if machine.topology != TORUS:
-        problem = f"value {machine.topology!r}: expected {TORUS} for the paper's analytical model"
-        raise ConfigError(problem, where="machine.topology")
+    """Raise ConfigError for what the analytical model does not know: its PEs serve themselves."""
+    for key, known in {"topology": TORUS, "service": POLLED}.items():
+        if (value := getattr(machine, key)) != known:
+            problem = f"value {value!r}: expected {known} for the paper's analytical model"
+            raise ConfigError(problem, where=f"machine.{key}")
 
 
 def network_of(topology: Topology) -> Network:
@@ -115,6 +116,22 @@ def bytes_per_s(network: Network, source: int, destination: int) -> int:
     if network[0] == _LEVELS:
         return levels.bytes_per_s(network, source, destination)
     return network[3]
+
+
+@kernel
+def send_startup_ps(network: Network, source: int, destination: int, else_ps: int) -> int:
+    """What any message costs its sender: levels have their own, others ``else_ps``."""
+    if network[0] == _LEVELS:
+        return levels.send_startup_ps(network, source, destination)
+    return else_ps
+
+
+@kernel
+def receive_startup_ps(network: Network, source: int, destination: int, else_ps: int) -> int:
+    """Likewise its receiver."""
+    if network[0] == _LEVELS:
+        return levels.receive_startup_ps(network, source, destination)
+    return else_ps
 
 
 @kernel

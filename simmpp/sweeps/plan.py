@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from simmpp.common.errors import ConfigError
@@ -57,11 +58,13 @@ class Plan:
         swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
 
-    @property
+    @cached_property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
-        packs = any(planned.point.policy.packs for planned in self.points)
-        return result_columns(self.further, packs=packs)
+        uses = {use for planned in self.points for use in planned.point.policy.uses}
+        configs = (planned.point.config for planned in self.points)
+        uses |= {use for c in configs for use in c.machine_for(c.processors).uses}
+        return result_columns(self.further, uses)
 
     @property
     def tasks(self) -> list[Task]:
@@ -100,8 +103,9 @@ class Plan:
 
     def record(self, outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
         """The content of ``run.json``: what it is of, and how far it is."""
-        configs = (planned.point.config for planned in self.points)
-        machines = (config.machine_for(config.processors) for config in configs)
+        configs = {id(p.point.comparison): p.point.comparison for p in self.points}.values()
+        machines = [of.config.machine_for(of.config.processors) for of in configs]
+        cells = [{"processors": of.config.processors, **of.swept} for of in configs]
         keys = {planned.task.key for planned in self.points}
         failures = [bool(outcomes[key].error) for key in keys if key in outcomes]
         further = {
@@ -110,7 +114,7 @@ class Plan:
             FAILED: failures.count(True),
             "further_columns": list(self.further),
         }
-        return record(self.config, self.workloads, machines, len(self.points), further)
+        return record(self.config, self.workloads, machines, len(self.points), further, cells)
 
     def rows(self, outcomes: Mapping[str, Outcome]) -> list[Row]:
         """Rows of the points that are finished, sorted by their keys."""

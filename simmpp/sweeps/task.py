@@ -17,6 +17,9 @@ from simmpp.policy.reads import knows_loads, numbers_read, reads
 from simmpp.policy.view import NUMBERS
 from simmpp.sweeps.grid import GridPoint
 
+TELL_NOTHING = ("name", "sources", "power_mw", "price_micros")
+"""Fields of machines that decide no simulation."""
+
 
 @dataclass(frozen=True, eq=False)
 class Task:
@@ -41,7 +44,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     """
     config, policy = point.config, canonical(point.policy)
     settings = config.settings
-    if settings.method == SIMULATE and _holds_everything(config):
+    talks = policy.rules.idle is not None  # also where nothing else is to do
+    if settings.method == SIMULATE and not talks and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
@@ -67,13 +71,13 @@ def task_of(point: GridPoint, digest: str) -> Task:
 def constants_of(config: Config) -> dict[str, Any]:
     """All of a point's machine that decides a simulation."""
     constants = asdict(replace(config.machine_for(config.processors), sources={}))
-    return {name: value for name, value in constants.items() if name not in ("name", "sources")}
+    return {name: value for name, value in constants.items() if name not in TELL_NOTHING}
 
 
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
     rules, defaults = policy.rules, PolicyParameters()
-    if rules.all_resident:
+    if rules.all_resident and rules.idle is None:
         return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))
@@ -92,7 +96,7 @@ def decides(policy: PolicyParameters) -> dict[str, Any]:
 def _holds_everything(config: Config) -> bool:
     """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
     full = config.memory.bytes is None and config.memory.fraction >= 1
-    return full or config.processors == 1
+    return full or config.settings.placement.islands == config.processors
 
 
 def _hash(*parts: object) -> str:

@@ -11,20 +11,20 @@ import heapq
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from oracles.costs import copy_ps, intersection_ps
-from oracles.dispatch import Dispatch
+from oracles.costs import intersection_ps
 from oracles.ledger import Outcome
 from oracles.network import distance
+from oracles.serving import Serving
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
-class Simulation(Dispatch):
+class Simulation(Serving):
     """The event loop and the activities of a PE."""
 
     def run(self) -> None:
@@ -36,6 +36,10 @@ class Simulation(Dispatch):
             "begin": self.begin,
             "dispatch": self.dispatch,
             "take": self.take,
+            "serve": self.serve,
+            "served": self.served,
+            "rest": self.rest,
+            "wake": self.wake,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -44,15 +48,6 @@ class Simulation(Dispatch):
             handlers[what](time, whom)
         if self.rays_left:
             raise AssertionError(f"{self.rays_left} rays left and nothing scheduled")
-
-    def arrive(self, time: int, message: Message) -> None:
-        """A message lies in the inbox; a sleeping PE wakes."""
-        self.ledger.arrived(time, message)
-        pe = self.pes[message.destination]
-        pe.inbox.append(message)
-        if pe.asleep:
-            pe.asleep = False
-            self.schedule(time, pe, "begin")
 
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
@@ -69,23 +64,21 @@ class Simulation(Dispatch):
             n_tests = len(self.ledger.tested) - tests_before
             self.ledger.open[pe.number] = (time, "compute", n_tests)
         else:
-            pe.asleep = True
+            self.fall_asleep(time, pe)
             return
         self.sample_bytes(pe)
         self.schedule(work_end, pe, "dispatch")
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
-        """Unpack one message and do what it asks for; returns the end of that."""
-        cost = self.machine.receive_startup_ps
-        unpack = self.machine.unpack
-        cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
-        clock = self.pay("communication", pe, time, cost)
-        self.ledger.received += 1
-        pe.known_load[message.source] = message.load
-        pe.heard[message.source] = clock
-        pe.in_flight_to[message.source] = 0
-        if message.count(OBJECT) or message.count(RAYS):
-            pe.peers.add(message.source)
+        """Unpack one message, or take it over, and do what it asks for; returns the end of that."""
+        if self.machine.service == "thread":
+            clock = self.pay("communication", pe, time, self.machine.handoff_ps)
+        else:
+            clock = self.pay("communication", pe, time, self.unpacking(pe, message))
+            self.ledger.received += 1
+            self.hear_load(clock, pe, message)
+        if message.carries:
+            self.get_on(pe)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -96,9 +89,11 @@ class Simulation(Dispatch):
                 self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
         wanted = [part.obj for part in message.parts if part.kind == REQUEST]
-        if wanted:
+        if wanted and self.machine.service == "pe":
             answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
             clock = self.send(clock, pe, message.source, answer)
+        if message.count(USER):
+            clock = self.hear(clock, pe, message)
         self.sample_rays(pe)
         return clock
 
@@ -152,6 +147,7 @@ class Simulation(Dispatch):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
+        self.get_on(pe)
         clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
         self.positions[ray] += 1
         was_granted = ray in pe.granted
@@ -177,6 +173,7 @@ class Simulation(Dispatch):
         """A ray is shaded and leaves its children here."""
         clock = self.pay("compute", pe, clock, self.machine.ray_ps)
         self.ledger.finished_ps.append(clock)
+        self.get_on(pe)
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]
         pe.ready.remove(ray)
@@ -190,7 +187,8 @@ class Simulation(Dispatch):
         self.sample_loads(time)
         messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
-        self.ledger.end_activity(pe.number, clock)
+        if pe.number in self.ledger.open:  # not when it was woken
+            self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:
             self.schedule(clock, pe, "begin")
         else:

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from oracles import blocks, tree
 from oracles.costs import Stage, hops_from, slowest, transfer_ps
 from oracles.state import Message
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import Level, Machine
+from simmpp.machine.messages import LOAD, REQUEST
 
 Way = list[tuple[str, ...]]
 
@@ -56,6 +57,26 @@ def distance(machine: Machine, source: int, destination: int) -> int:
         return hops_from(machine.shape, source)[destination]
     of = {"levels": blocks.distance, "fat-tree": tree.distance}[machine.topology]
     return of(machine, source, destination)
+
+
+def startups_ps(machine: Machine, source: int, destination: int) -> tuple[int, int]:
+    """What a message costs its sender and its receiver, whatever its size."""
+    of: Machine | Level = machine
+    if machine.topology == "levels":
+        of = blocks.level_between(machine, source, destination)
+    return of.send_startup_ps, of.receive_startup_ps
+
+
+def sending(machine: Machine, pe: int, other: int, kind: int) -> int:
+    """What a PE pays for a message besides packing it; the kind is that of its first part."""
+    if machine.service == "nic" and kind in (REQUEST, LOAD):
+        return machine.get_startup_ps
+    return startups_ps(machine, pe, other)[0]
+
+
+def receiving(machine: Machine, pe: int, other: int) -> int:
+    """What a PE, or its thread, pays for a message from another, besides unpacking it."""
+    return machine.completion_ps if machine.service == "nic" else startups_ps(machine, other, pe)[1]
 
 
 def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:

@@ -42,7 +42,7 @@ from simmpp.engine.arrays.records import (
     TRAFFIC,
 )
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.messages import MESSAGE_KINDS, USER_WORDS
 from simmpp.policy.record import VIEW
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
@@ -61,6 +61,10 @@ class Sizes:
     """Rows: pairs of PEs that know of each other, at most."""
     sent: int
     """Messages that one step of a PE sends at most."""
+    messages: int
+    """In flight or in an inbox, to begin with."""
+    talks: bool
+    """The policy may send messages of its own."""
     tested: int
     """Tests that are recorded."""
     logged: int
@@ -89,7 +93,7 @@ ARRAYS = {
     "child_offsets": Array(I4),  # (n + 1,)
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
-    "owners": Array(I4),  # (N,)
+    "owners": Array(I4),  # (N,), in each island, counted from its first PE
     # PEs that hold each object for good (CSR); empty where the policy does not want to know.
     "holder_offsets": Array(I8),
     "holder_pes": Array(I4),
@@ -117,8 +121,10 @@ ARRAYS = {
     "peer_buckets": Array(I4, lambda n: _hashed(n.peers)),
     "peer_marks": Array(I4, lambda n: 2),
     # in flight or in an inbox; grows
-    "messages": Array(MESSAGE, lambda n: min(n.sent, n.objects + 2 * n.nb + 1)),
+    "messages": Array(MESSAGE, lambda n: n.messages),
     "message_marks": Array(I4, lambda n: 2),
+    # Words of messages of the policy's own, USER_WORDS for each place; empty if it sends none.
+    "user_words": Array(I8, lambda n: USER_WORDS * n.messages if n.talks else 0),
     # Misses with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_from rays on.
     "unasked_ends": Array(I4, lambda n: 4 * n.nb),
     "unasked_links": Array(I4, lambda n: 2 * n.misses),
@@ -138,8 +144,8 @@ ARRAYS = {
     # First parts, plus 1, of the messages that a dispatch is making up: of rays and what goes with
     # them by distance in the ring, of requests alone nb further on.
     "made_up": Array(I4, lambda n: 2 * n.nb),
-    "sort_keys": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
-    "sort_items": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
+    "sort_keys": Array(I8, lambda n: max(n.objects, n.sent)),
+    "sort_items": Array(I8, lambda n: max(n.objects, n.sent)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
@@ -153,7 +159,7 @@ ARRAYS = {
     "slices": Array(SLICE, lambda n: n.counted),
     # of the compiled event loop
     "heap": Array(EVENT_KEY, lambda n: 0),  # grows
-    "processes": Array(PROCESS, lambda n: n.nb),
+    "processes": Array(PROCESS, lambda n: 2 * n.nb),  # PEs, then their threads
 }
 """Every array of a run, declared nowhere else."""
 
@@ -173,8 +179,10 @@ MACHINE = tuple(name for name, kind in get_type_hints(Machine).items() if kind i
 PARAMETERS = (
     *MACHINE,
     "processors",
+    "island",  # PEs of an island
     "n_objects",
     "contends",  # links and ports serve one message at a time
+    "service",  # who answers requests: BY_PE, BY_THREAD or BY_NIC
     "depth_first",
     "keeps",  # fetched objects, in transient memory
     "transient",  # objects that it holds, 0: as many as fit
@@ -186,11 +194,16 @@ PARAMETERS = (
     "send",  # addresses of the policy's hooks, 0 for one that it does not have
     "ask",
     "keep",
+    "heard",
+    "idle",
     "send_from",  # waiting rays from which on they are asked
     "ask_from",
     "send_reads",  # groups of the view's fields
     "ask_reads",
     "keep_reads",
+    "heard_reads",
+    "idle_reads",
+    "talks",  # the policy may send messages of its own
     "remembers",  # each PE has a view of its own
     "to_holders",  # rays may go to any PE that holds what they need
     "random_key",
@@ -221,11 +234,14 @@ COUNTERS = (
     "arrivals",  # that it has seen
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
+    "user_dropped",  # messages of the policy's own that were one too many, or to nobody
+    "n_stale",  # events in the heap of sleepers whom a message woke before their time
 )
 REPORT = (
     "phase",  # of the PE's next instant
     "consumed",  # 1: the message of the inbox was received
     "n_sent",  # messages in the outbox
+    "handed",  # the message that a thread has handed over to its PE; NONE: none
 )
 """What the last step of a PE wants its engine to know."""
 

@@ -10,13 +10,24 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, SAMPLED, UNPACK, Row, Run
+from simmpp.engine.arrays.records import (
+    BEGIN,
+    BY_PE,
+    BY_THREAD,
+    DISPATCH,
+    NONE,
+    SAMPLED,
+    SLEEP,
+    UNPACK,
+    WOKEN,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
     messages,
     misses,
-    peer_rows,
     pes,
     rays,
     test_ps,
@@ -24,19 +35,19 @@ from simmpp.engine.arrays.views import (
     tested_rays,
     topology,
 )
+from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
+from simmpp.engine.pe.peers import hear_load, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
+from simmpp.engine.pe.talking import get_on, hear, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
 from simmpp.machine.topology import hops
-
-SLEEP = -1
 
 
 @kernel
@@ -45,33 +56,38 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold the phase of that instant, whether the message was consumed
-    and the number of messages in the outbox.
+    and the number of messages in the outbox. With phase WOKEN the PE sleeps as well: a message
+    that arrives before that time wakes it, and there is no such instant any more.
     """
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
         sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
+    if phase == WOKEN and message == NONE:
+        wake(s, me, now_ps)
+        phase = DISPATCH
     if phase == DISPATCH:
         next_ps = dispatch(s, me, message == NONE, now_ps)
     # What was sent departs by now; a dispatch that sent nothing took no time, so the next activity
     # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
-        next_ps = _begin(s, me, message, now_ps)
-    pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
+        next_ps = _begin(s, me, phase, message, now_ps)
+    if s.phase != WOKEN:
+        pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
     return next_ps
 
 
 @kernel
-def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
+def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
     if message == NONE and pe.n_ready == 0:
-        return SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
     s.activities += 1
     s.phase = DISPATCH
     if message != NONE:
@@ -92,11 +108,18 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Unpack one message and do what it asks for; returns the end of that work."""
+    """Unpack one message and do what it asks for; returns the end of that work.
+
+    If a thread has done that already, take the message over.
+    """
     pe, m = pes(s)[me], messages(s)[message]
-    clock_ps = now_ps + s.receive_startup_ps + parts_ps(s, message, UNPACK)
-    # Heard before an answer is packed, and whatever the message is.
-    _hear(s, me, m.source, m.load, m.kind, clock_ps)
+    if s.service == BY_THREAD:
+        clock_ps = now_ps + s.handoff_ps
+    else:
+        clock_ps = now_ps + unpacking_ps(s, me, message)
+        # Heard before an answer is packed, and whatever the message is.
+        hear_load(s, me, m, clock_ps)
+        s.received += 1
     pe.received_load = 1 if m.kind == LOAD else 0
     links = hops(topology(s), m.source, me) if s.record_hops else 0
     part = message
@@ -109,13 +132,24 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         note_load(s, me, clock_ps)
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
-    clock_ps = answer(s, me, message, clock_ps)
-    s.received += 1
+    if s.service == BY_PE:
+        clock_ps = answer(s, me, message, clock_ps)
+    if m.kind == USER:
+        clock_ps = hear(s, me, message, clock_ps)
+    elif m.kind == OBJECT or m.kind == RAYS:
+        get_on(pe)
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     forget(s, message)
     return clock_ps
+
+
+@kernel
+def unpacking_ps(s: Run, me: int, message: int) -> int:
+    """What a message costs its receiver."""
+    m = messages(s)[message]
+    return receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
 
 
 @kernel
@@ -139,18 +173,6 @@ def _cross(s: Run, first: int, n: int, links: int) -> None:
     for _ in range(n):
         rays(s)[ray].hops += links
         ray = rays(s)[ray].next
-
-
-@kernel
-def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
-    """Remember the load in a header, and whom rays or objects came from."""
-    if s.listens:
-        peer_row = peer_of(s, me, source)
-        peer_rows(s)[peer_row].load = load
-        peer_rows(s)[peer_row].heard_ps = now_ps
-        peer_rows(s)[peer_row].in_flight = 0
-        if s.refresh_ps != NONE and kind in (OBJECT, RAYS):
-            note_exchange(s, me, peer_row)
 
 
 @kernel
@@ -183,6 +205,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             clock_ps += s.ray_ps
             pop_ready(s, me)
             finish_ray(s, me, ray, clock_ps)
+    if tests > 0 or s.rays_done > done:
+        get_on(pe)
     if s.logs:
         note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
     if s.record_counters:

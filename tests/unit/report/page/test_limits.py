@@ -20,6 +20,7 @@ from simmpp.report.page.limits import (
 )
 from simmpp.report.page.report import report_of, write_page
 from simmpp.run.limits import BANDWIDTH, COMPUTE, COPYING, HOT, IMBALANCE, LATENCY, STARTUPS
+from simmpp.run.machines import MACHINE_OF
 from simmpp.sweeps.winners.points import points_of
 
 FOUR = replace(MACHINE, shape=(4, 1, 1))
@@ -36,8 +37,10 @@ NUMBERS: dict[str, Any] = {
 }
 
 
-def limits_in(folder: Path, rows: list[Row], record: dict[str, Any]) -> PointLimits:
-    (written(folder, rows) / "run.json").write_text(json.dumps(record))
+def limits_in(
+    folder: Path, rows: list[Row], record: dict[str, Any], further: tuple[str, ...] = ()
+) -> PointLimits:
+    (written(folder, rows, further) / "run.json").write_text(json.dumps(record))
     found = read_folder(folder)
     return limits_of_points(found, points_of(found.rows, found.further))
 
@@ -57,8 +60,8 @@ def test_a_run_tells_all_parts(tmp_path: Path) -> None:
         COPYING: 800 - 380,
         HOT: 4 * (900 - 600),
         IMBALANCE: 0,
-        LATENCY: 371,  # of 4 x 100: 10 x 130 of latency and a hop, 100 bytes
-        BANDWIDTH: 29,
+        LATENCY: 373,  # of 4 x 100: 10 x 140 of latency and 4 / 3 hops, 100 bytes
+        BANDWIDTH: 27,
     }
     (line,) = limit_table(limits)
     assert line == {
@@ -69,8 +72,8 @@ def test_a_run_tells_all_parts(tmp_path: Path) -> None:
         "copying": "10.5 %",
         "one hot PE": "30 %",
         "imbalance": "0 %",
-        "latency": "9.28 %",
-        "bandwidth": "0.725 %",
+        "latency": "9.32 %",
+        "bandwidth": "0.675 %",
         "limited most by": "one hot PE",
         "would help first": "deal pixels otherwise (placement.pixels)",
     }
@@ -99,6 +102,14 @@ def test_a_sweep_tells_what_its_rows_know(tmp_path: Path) -> None:
         "Besides computing, the fastest dataflow is limited most by copying in 2 of 2 cases (15 % "
         "of the makespan)."
     )
+
+
+def test_machines_that_differ_are_told_by_what_was_swept(tmp_path: Path) -> None:
+    slow, at = replace(FOUR, send_startup_ps=99), {"processors": 4, "machine.send_startup": "99 ps"}
+    record = {"machines": [asdict(FOUR), asdict(slow)], MACHINE_OF: [{"at": at, "machine": 1}]}
+    rows = [row(**NUMBERS, **{"machine.send_startup": cell}) for cell in ("99 ps", "1 ps")]
+    limits = limits_in(tmp_path, rows, record, ("machine.send_startup",))
+    assert ["startups" in of.parts_ps for of in limits.of.values()] == [False, True]
 
 
 def test_machines_that_differ_are_not_mistaken_for_each_other(tmp_path: Path) -> None:
