@@ -2,7 +2,7 @@
 
     python experiments/path/cornell.py [BATCHES, default 32]
 
-A picture of 32 x 32 pixels, its light in 4 x 4 patches, 8,192 paths of depth 8 in each patch and
+A picture of 128 x 128 pixels, its light in 4 x 4 patches, 8,192 paths of depth 8 in each patch and
 batch; each batch has a seed of its own. The standard error of the difference is that of the means
 of batches.
 """
@@ -27,7 +27,7 @@ sys.path.append(str(Path(__file__).parents[2] / "tests"))
 from oracles.mitsuba_paths import MitsubaPaths
 
 HERE = Path(__file__).parent
-SIDE, PATCHES, SAMPLES, DEPTH = 32, 4, 128, 8
+SIDE, PATCHES, SAMPLES, DEPTH = 128, 4, 8, 8
 Floats = NDArray[np.float64]
 
 
