@@ -18,6 +18,7 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
 )
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
@@ -32,7 +33,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import USER_COPIED_AS
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
@@ -103,7 +104,8 @@ def _sizes(
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
+    known = nb * placement.island
+    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -130,7 +132,7 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    pack, unpack = copies(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -180,6 +182,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
@@ -235,7 +238,7 @@ def _deal(state: State, placement: Placement) -> None:
     """Give primary rays to the PEs of their pixels, in pixel order."""
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
-    pes["first"] = NONE
+    pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
