@@ -22,9 +22,11 @@ from matplotlib.figure import Figure
 
 import simmpp
 from simmpp.common.files import write_csv
+from simmpp.placement.placement import Placement
 from simmpp.plot.matplotlib_panels import SETTINGS, save
 from simmpp.scene.scene import Camera, Light, Polygon, Scene
 from simmpp.workload.cache.store import workload_for
+from simmpp.workload.workload import Workload
 
 sys.path.append(str(Path(__file__).parent))
 
@@ -33,7 +35,7 @@ from cornell import box
 HERE = Path(__file__).parent
 FRACTIONS = (Fraction(2, 100), Fraction(1, 10), Fraction(1, 4), Fraction(1, 2))
 POLICIES = ("object", "ray", "concurrent")
-PROCESSORS, RESOLUTION, SAMPLES, DEPTH, SEEDS = 64, 128, 4, 8, (0, 1, 2)
+PROCESSORS, RESOLUTION, SAMPLES, DEPTH, SEEDS = 64, 64, 4, 8, (0, 1, 2)
 WALL, BLOCK = 14, 7
 """Squares along each side of a wall, and of a block's face."""
 COLOURS = {"object": "#d55e00", "ray": "#0072b2", "concurrent": "#009e73"}
@@ -50,7 +52,10 @@ def room() -> Scene:
             n = 1 if part.name.startswith("lamp") else WALL if is_wall else BLOCK  # type: ignore[union-attr]
             squares += [Polygon(corners, None, part.material) for corners in _cut(a, b, c, d, n)]
     front = np.array([(556, 0, 0), (0, 0, 0), (0, 548.8, 0), (556, 548.8, 0)], np.float64)
-    squares += [Polygon(corners, None, scene.objects[0].material) for corners in _cut(*front, WALL)]
+    squares += [
+        Polygon(corners, None, scene.objects[0].material)
+        for corners in _cut(front[0], front[1], front[2], front[3], WALL)
+    ]
     camera = Camera((278, 273, 5), (278, 240, 500), (0, 1, 0), 75)
     return replace(scene, name="room", objects=tuple(squares), camera=camera)
 
@@ -77,7 +82,7 @@ def scenes() -> dict[tuple[str, str], Scene]:
     }
 
 
-def uses(workload: simmpp.Workload, placement: simmpp.Placement) -> int:
+def uses(workload: Workload, placement: Placement) -> int:
     """Tests of objects that are not resident where the pixel starts: all by fetched ones."""
     holds = np.zeros((placement.processors, workload.n_objects), bool)
     holds[placement.owners, np.arange(workload.n_objects)] = True
@@ -90,13 +95,9 @@ def uses(workload: simmpp.Workload, placement: simmpp.Placement) -> int:
 
 def rows_of(scene: Scene, name: str, render: str) -> list[Row]:
     """Means over the seeds."""
-    depth = {"depth": DEPTH} if render == "path" else {}
-    picture = simmpp.Picture(
-        resolution=RESOLUTION,
-        samples=SAMPLES,
-        render=render,
-        **depth,  # type: ignore[arg-type]
-    )
+    picture = simmpp.Picture(resolution=RESOLUTION, samples=SAMPLES)
+    if render == "path":
+        picture = replace(picture, render="path", depth=DEPTH)
     workload = workload_for(scene, picture)
     machine, rules = simmpp.make_machine("t3e", processors=PROCESSORS), simmpp.PlacementRules()
     rows = []
