@@ -40,7 +40,7 @@ def result_of(engine: str, case: Case) -> Result:
         engine=engine,
         ready_order=case.ready_order,
         seed=SEED,
-        record=Recording(log=True, tests=True, hops=True),
+        record=Recording(log=True, tests=True, hops=True, ends=True),
     )
 
 
@@ -82,6 +82,7 @@ def outcome_of(result: Result) -> Outcome:
         slices=slices,
         tested=list(zip(tested_rays, tested_objects, strict=True)),
         ray_hops=[] if result.ray_hops is None else result.ray_hops.tolist(),
+        ray_ends=[] if result.ray_ends_ps is None else result.ray_ends_ps.tolist(),
     )
 
 

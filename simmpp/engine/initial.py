@@ -74,6 +74,7 @@ def new_state(
         "record_tests": recording.tests,
         "record_counters": recording.counters,
         "record_hops": recording.hops,
+        "record_ends": recording.ends,
         "bin_width": first_width(_least_ps(workload, machine)),
         "logs": recording.sink is not None,
     }
@@ -115,6 +116,7 @@ def _sizes(
         messages=min(sent, n_objects + 2 * nb + 1),
         talks=parameters.rules.talks,
         tested=workload.n_tests if recording.tests else 0,
+        ended=n_rays if recording.ends else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
     )

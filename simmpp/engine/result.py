@@ -105,6 +105,8 @@ class Result(Displayed):
     ray_hops: NDArray[np.int32] | None = None
     """(n,) int32, with ``Recording.hops``: links crossed for each ray, by itself in a message or by
     the requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
+    ray_ends_ps: NDArray[np.int64] | None = None
+    """(n,) int64, with ``Recording.ends``: when each ray was finished."""
     tested_rays: NDArray[np.int32] | None = None
     """(tests,) int32, with ``Recording.tests``: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None
@@ -216,6 +218,7 @@ def concluded(
         log=log,
         counters=state.counters() if state["record_counters"] else None,
         ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
+        ray_ends_ps=state.arrays["ends_ps"] if state["record_ends"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

@@ -82,6 +82,8 @@ class Outcome:
     """(ray, object) in the order performed: by the beginnings of the computes."""
     ray_hops: list[int]
     """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
+    ray_ends: list[int]
+    """When each ray was finished."""
 
 
 @dataclass
@@ -101,6 +103,7 @@ class Ledger:
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
     ray_hops: list[int] = field(default_factory=list)
+    ray_ends: list[int] = field(default_factory=list)
     dropped: int = 0
     """Messages of the policy's own that were not sent."""
     held_rays: list[int] = field(default_factory=list)
@@ -192,4 +195,5 @@ class Ledger:
             slices=self.clipped(end),
             tested=self.tested,
             ray_hops=self.ray_hops,
+            ray_ends=self.ray_ends,
         )

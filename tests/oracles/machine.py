@@ -173,6 +173,7 @@ class Simulation(Serving):
         """A ray is shaded and leaves its children here."""
         clock = self.pay("compute", pe, clock, self.machine.ray_ps)
         self.ledger.finished_ps.append(clock)
+        self.ledger.ray_ends[ray] = clock
         self.get_on(pe)
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]

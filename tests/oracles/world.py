@@ -51,6 +51,7 @@ class World:
         self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
         self.positions = [0] * self.workload.n_rays
         self.ledger.ray_hops = [0] * self.workload.n_rays
+        self.ledger.ray_ends = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         self.sampled = [pe.load for pe in self.pes]
         self.sampled_at = 0

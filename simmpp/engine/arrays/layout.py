@@ -67,6 +67,8 @@ class Sizes:
     """The policy may send messages of its own."""
     tested: int
     """Tests that are recorded."""
+    ended: int
+    """Rays whose end is recorded."""
     logged: int
     """Rows of the event log that are kept before they are handed on."""
     counted: int
@@ -148,6 +150,7 @@ ARRAYS = {
     "sort_items": Array(I8, lambda n: max(n.objects, n.sent)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
+    "ends_ps": Array(I8, lambda n: n.ended),  # of finished rays
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
     "log": Array(EVENT, lambda n: n.logged),
     # What a PE did in each bin, BINS per PE; this and what follows: empty without counters.
@@ -216,6 +219,7 @@ PARAMETERS = (
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
+    "record_ends",
     "logs",
     "record_counters",
 )

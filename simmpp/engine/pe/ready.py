@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
-from simmpp.engine.arrays.views import child_offsets, pes, pixels, rays
+from simmpp.engine.arrays.views import child_offsets, ends_ps, pes, pixels, rays
 
 
 @kernel
@@ -72,3 +72,5 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     s.rays_done += 1
     s.rays_left += end - child - 1
     s.last_ray_ps = max(s.last_ray_ps, now_ps)
+    if s.record_ends:
+        ends_ps(s)[ray] = now_ps
