@@ -39,7 +39,8 @@ def place(
         replica_objects=objects,
         transient=kept_count(memory, workload.n_objects, len(objects), processors),
         pixel_pes=starts_on,
-        transient_bytes=memory.fetch or 0,
+        transient_bytes=memory.kept_bytes,
+        capacity=memory.bounds,
     )
 
 
