@@ -130,6 +130,26 @@ def _pick(rng: np.random.Generator, values: Sequence[Any]) -> Any:
     return values[int(rng.integers(len(values)))]
 
 
+def with_other_rays(rng: np.random.Generator, workload: Workload) -> Workload:
+    """The same rays with rounds, homes, weights, scaled tests and results, each of them or not."""
+    n, n0, n_objects = workload.n_rays, workload.n_primaries, workload.n_objects
+    _, rounds = np.unique(rng.integers(0, int(_pick(rng, (1, 2, 5))), n0), return_inverse=True)
+    drawn: dict[str, Any] = {
+        "root_rounds": rounds.astype(np.int32),
+        "root_homes": rng.integers(-1, n_objects, n0).astype(np.int32),
+        "root_weights": rng.integers(0, 8, n0) / 4,
+        "ray_test_scales": rng.integers(0, 4, n).astype(np.uint8),
+        "object_results": rng.integers(0, 4000, n_objects),
+    }
+    nothing = {"root_homes": -1, "root_weights": 1}
+    used = {
+        name: array
+        for name, array in drawn.items()
+        if rng.random() < 0.6 and (array != nothing.get(name, 0)).any()
+    }
+    return replace(workload, **used)
+
+
 def _children(rng: np.random.Generator, depth: int) -> list[int]:
     """Kinds of the rays that one ray spawns."""
     if depth == 4:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import click
@@ -54,7 +55,7 @@ def machine_command(
     Without PRESET, the machines that there are. FILE is a machine of your own or a configuration,
     whose machine is then printed.
 
-    A constant without a document says ESTIMATE and the range it may lie in.
+    A constant without a document says ESTIMATE. The range is where it may lie.
 
     fit TABLE makes a machine of what you measured: a CSV with the columns bytes, one_way_us (half
     a round trip of a ping-pong; or _s, _ms, _ns) and, if measured, messages_per_s (sent back to
@@ -77,9 +78,12 @@ def machine_command(
 
 def _print_preset(name: str) -> None:
     chosen = load_preset(name)
-    rows = [(key, text, chosen.sources[key]) for key, text in chosen.texts.items()]
     say(f"{chosen.name}: {chosen.description}\n")
-    say(texts(("constant", "value", "source"), [*rows, ("contention", NO_CONTENTION, _FREE)]))
+    rows = [
+        (key, text, chosen.spans.get(key, ""), chosen.sources[key])
+        for key, text in chosen.texts.items()
+    ]
+    _print([*rows, ("contention", NO_CONTENTION, "", _FREE)])
 
 
 def _print_file(name: str, may_run: bool) -> None:
@@ -98,9 +102,13 @@ def _print_file(name: str, may_run: bool) -> None:
 
 def _print_layers(layers: Layers, contention: str) -> None:
     of = "a choice: torus, levels or fat-tree"
-    rows = [("topology", layers.words["topology"], of), *lines_of(layers)]
-    rows.append(("contention", contention, _FREE))
-    say(texts(("constant", "value", "source"), rows))
+    rows = [("topology", layers.words["topology"], "", of), *lines_of(layers)]
+    rows.append(("contention", contention, "", _FREE))
+    _print(rows)
+
+
+def _print(rows: Iterable[Sequence[str]]) -> None:
+    say(texts(("constant", "value", "range", "source"), rows, whole=3))
 
 
 def _fit(table: str | None, out: Path | None, base: str) -> None:

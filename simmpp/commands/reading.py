@@ -55,4 +55,8 @@ def print_readings_of_sweep(config: Config) -> None:
 
 
 def _table(heading: str, lines: Iterable[Line]) -> Fitting:
-    return texts((heading, "value", "source"), lines)
+    rows = (
+        (line.key, line.value, f"{line.source} (range {line.span})" if line.span else line.source)
+        for line in lines
+    )
+    return texts((heading, "value", "source"), rows)

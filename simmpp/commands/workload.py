@@ -14,7 +14,7 @@ from simmpp.commands.parts.terminal import OBJECTS_SHOWN, at_work, go_on, say, w
 from simmpp.commands.parts.tracing import workload
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_bytes
-from simmpp.workload.describe import object_uses, rays_by_depth, rays_by_kind
+from simmpp.workload.describe import object_uses, primaries, rays_by_depth, rays_by_kind
 from simmpp.workload.exchange.columns import WORKLOAD_SUFFIXES, is_workload
 from simmpp.workload.exchange.exchange import export_workload
 from simmpp.workload.workload import Workload
@@ -65,13 +65,12 @@ def workload_command(
 
 def _list(workload: Workload, most_objects: int | None) -> None:
     """Print counts, rays by depth and kind, and objects; the first ones of a long list."""
-    rows, columns = workload.picture
     tested = len(np.unique(workload.itinerary_objects))
     size = format_bytes(int(workload.object_bytes.sum()))
     depths = rays_by_depth(workload)
     deepest = f", ... to depth {len(depths)}" if len(depths) > DEPTHS_SHOWN else ""
     say(
-        f"{workload.name}: {columns} x {rows} primary rays, {workload.n_rays} rays in all, "
+        f"{workload.name}: {primaries(workload)}, {workload.n_rays} rays in all, "
         f"{workload.n_tests} tests\n"
         f"{workload.n_objects} objects, {size}; {tested} of them tested\n"
         f"rays by depth: {', '.join(map(str, depths[:DEPTHS_SHOWN]))}{deepest}",

@@ -8,7 +8,7 @@ are below the preset that they are for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import as_file, files
@@ -26,6 +26,7 @@ from simmpp.common.units import shown
 from simmpp.common.yamlfile import Document, parse_yaml, yaml_text
 from simmpp.machine.constants import Constants
 from simmpp.machine.presets import Preset, preset_names
+from simmpp.machine.ranges import ranges_of, spans_of
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import POLICIES, PolicyParameters
 
@@ -68,6 +69,8 @@ class Line(NamedTuple):
     """As the file writes it, with its unit."""
     source: str
     """A sentence of the paper, or ESTIMATE, or what else it rests on."""
+    span: str = ""
+    """The range of a constant that may be off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,16 +125,26 @@ def _reading(name: str, text: str, where: str) -> Reading:
     cited = Cited()
     values = values_of(parts, cited, places)
     _refuse_choices(values, places)
+    _refuse_ranges(cited, places)
     keys = structure(_Keys, _with_names(values), places)
-    costs = {preset: _costs(preset, keys, cited) for preset in values.get(MACHINE, {})}
+    costs = {
+        preset: _costs(preset, keys, of, cited, places)
+        for preset, of in values.get(MACHINE, {}).items()
+    }
     return Reading(
         name,
         description,
         {key: values[key] for key in ("placement", "memory") if key in values},
         values.get(POLICY, {}),
         costs,
-        tuple(Line(key, text, cited.sources[key]) for key, text in cited.texts.items()),
+        tuple(_lines(cited)),
     )
+
+
+def _lines(cited: Cited) -> Iterator[Line]:
+    spans = spans_of(cited)
+    for key, text in cited.texts.items():
+        yield Line(key, text, cited.sources[key], spans.get(key, ""))
 
 
 def _parts(document: Document) -> tuple[str, dict[str, Any], Places]:
@@ -176,6 +189,14 @@ def _refuse_choices(values: Mapping[str, Any], places: Mapping[KeyPath, Place]) 
                 raise misplaced(path, f"{key}expected none: readings do not set it", places)
 
 
+def _refuse_ranges(cited: Cited, places: Mapping[KeyPath, Place]) -> None:
+    """Raise ConfigError for a range of what is no constant of a machine."""
+    for key in cited.ranges:
+        path = tuple(key.split("."))
+        if path[0] != MACHINE:
+            raise misplaced((*path, "range"), "expected none: machines have ranges", places)
+
+
 def _with_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """The values, with each policy's name where ``structure`` looks for it."""
     if not isinstance(policies := values.get(POLICY), dict):
@@ -187,10 +208,12 @@ def _with_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**values, POLICY: named}
 
 
-def _costs(preset: str, keys: _Keys, cited: Cited) -> Preset:
-    prefix = f"{MACHINE}.{preset}."
-    texts, sources = (
-        {key.removeprefix(prefix): said for key, said in by_key.items() if key.startswith(prefix)}
-        for by_key in (cited.texts, cited.sources)
-    )
-    return Preset(preset, "", getattr(keys.machine, preset), texts, sources)
+def _costs(
+    preset: str, keys: _Keys, values: Mapping[str, Any], cited: Cited, places: Places
+) -> Preset:
+    of_preset = cited.below(f"{MACHINE}.{preset}.")
+    constants = getattr(keys.machine, preset)
+    at_preset = {path[2:]: place for path, place in places.items() if path[:1] == (MACHINE,)}
+    ranges = ranges_of(values, of_preset, at_preset)
+    spans = spans_of(of_preset)
+    return Preset(preset, "", constants, of_preset.texts, of_preset.sources, spans, ranges)

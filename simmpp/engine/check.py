@@ -42,6 +42,11 @@ def _check_workload(workload: Workload) -> None:
         if not does:
             raise WorkloadError(f"{name} does not fit the rays and objects", where=workload.name)
 
+    for name in ("root_rounds", "root_homes", "ray_test_scales", "object_results"):
+        if len(getattr(workload, name)):
+            problem = f"{name} are recorded, but no engine simulates them yet"
+            raise WorkloadError(problem, where=workload.name)
+
 
 def _check_machine(machine: Machine) -> None:
     numbers: list[object] = list(astuple(machine))

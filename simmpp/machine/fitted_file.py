@@ -65,9 +65,9 @@ def text_of(fit: Fit, table: str, base: str) -> str:
 
     def put(key: str, name: str) -> None:
         value, span, what = found[name]
-        estimate = what == ASSUMED
-        source = f"ESTIMATE, range {span}" if estimate else f"{table}, {INTERVAL} {span}"
-        lines.append(f"  {key}: {{value: {value}, source: {_quoted(source)}}}")
+        source = ASSUMED if what == ASSUMED else f"{table}, {INTERVAL}"
+        ends = f"[{span.replace(' to ', ', ')}]"
+        lines.append(f"  {key}: {{value: {value}, range: {ends}, source: {_quoted(source)}}}")
 
     for key in ("send_startup", "receive_startup"):
         put(key, key)

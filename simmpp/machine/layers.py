@@ -9,6 +9,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.strict import in_words
 from simmpp.machine.constants import Constants
 from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Level
+from simmpp.machine.ranges import NO_RANGES, Known, Ranges, known_of
 from simmpp.machine.transfer import slower
 
 _BELONGS = {
@@ -30,10 +31,19 @@ class Layers:
     """By the same keys."""
     words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS})
     """The choices."""
+    ranges: dict[str, tuple[int, int]] = field(default_factory=dict)
+    """Of those that may be off, by the same keys."""
     level_names: tuple[str, ...] = ()
     """The innermost first."""
 
-    def put(self, constants: Constants, source_of: Callable[[str], str]) -> None:
+    @property
+    def known(self) -> dict[str, Known]:
+        """Value, range and source of each constant."""
+        return known_of(self.numbers, self.sources, self.ranges)
+
+    def put(
+        self, constants: Constants, source_of: Callable[[str], str], ranges: Ranges = NO_RANGES
+    ) -> None:
         """A further layer. Levels of names that are known change these, others replace all."""
         self.words |= {"topology": implied(constants) or self.words["topology"]}
         self.words |= constants.words()
@@ -42,9 +52,12 @@ class Layers:
             self.level_names = names
             for key in [key for key in self.numbers if key.startswith("levels.")]:
                 del self.numbers[key], self.sources[key]
+                self.ranges.pop(key, None)
         given = constants.flat()
         self.numbers |= given
         self.sources |= {key: source_of(key) for key in given}
+        of_others = {key: ends for key, ends in self.ranges.items() if key not in given}
+        self.ranges = of_others | dict(ranges)
 
     def refuse_strangers(self, constants: Constants) -> None:
         """Raise ConfigError, with the key, for what a layer sets in vain."""

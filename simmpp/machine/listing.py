@@ -1,4 +1,4 @@
-"""Every constant of a machine with what it is and where it comes from, as lines."""
+"""Every constant of a machine with what it is, its range and where it comes from, as lines."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from simmpp.common.strict import expectation, fields_of, inner_class, is_by_name
 from simmpp.machine.constants import Constants
 from simmpp.machine.layers import Layers
 from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.ranges import Known
 
 
 class Line(NamedTuple):
@@ -17,16 +18,21 @@ class Line(NamedTuple):
     key: str
     value: str
     """With its unit."""
+    span: str
+    """The range that it may lie in, where one is stated."""
     source: str
 
 
 def lines_of(layers: Layers) -> list[Line]:
     """All constants; copies of all kinds of messages are one line where they are alike."""
-    lines = [
-        Line(key, _written(key, number), layers.sources[key])
-        for key, number in layers.numbers.items()
-    ]
+    lines = [_line(key, known) for key, known in layers.known.items()]
     return list(_joined(lines))
+
+
+def _line(key: str, known: Known) -> Line:
+    ends = () if known.is_exact else (known.low, known.high)
+    span = " to ".join(_written(key, end) for end in ends)
+    return Line(key, _written(key, known.value), span, known.source)
 
 
 def _written(key: str, number: int) -> str:

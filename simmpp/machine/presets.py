@@ -1,13 +1,14 @@
 """Machines of the package and of one's own: constants with the source of each, made into a Machine.
 
 A preset is a YAML file of the package. One's own machine is such a file as well, ``based_on`` a
-preset, whose constants it has where it says nothing; its values need no source.
+preset, whose constants it has where it says nothing; its values need no source. Constants may have
+a range beside the value.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from importlib.resources import as_file, files
 from math import prod
@@ -25,6 +26,7 @@ from simmpp.common.yamlfile import Document, parse_yaml, read_yaml, yaml_text
 from simmpp.machine.constants import Constants, machine_of
 from simmpp.machine.layers import Layers
 from simmpp.machine.machine import MOST_PROCESSORS, TORUS, Machine, Shape, is_shape
+from simmpp.machine.ranges import Known, Ranges, known_of, ranges_of, spans_of, written
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import default_shape
 
@@ -44,9 +46,19 @@ class Preset:
     texts: dict[str, str]
     """Each constant as the preset's file writes it, with its unit, by dotted key."""
     sources: dict[str, str]
-    """A citation for each constant, or ESTIMATE and the range; by the same keys."""
+    """A citation for each constant, or ESTIMATE; by the same keys."""
+    spans: dict[str, str] = field(default_factory=dict)
+    """The range of each constant that has one, written likewise; by the same keys."""
+    ranges: Ranges = field(default_factory=dict)
+    """The same as numbers, by the keys of ``Constants.flat``."""
     based_on: str = ""
     """The preset below it, if it is a machine of one's own."""
+
+    @property
+    def known(self) -> dict[str, Known]:
+        """Value, range and source of each constant, by the keys of ``Constants.flat``."""
+        numbers = self.constants.flat()
+        return known_of(numbers, {key: self.source(key) for key in numbers}, self.ranges)
 
     def text(self, key: str, write: Callable[[int], str]) -> str:
         """A constant with its unit, written by ``write`` where the file has it for all messages."""
@@ -59,9 +71,7 @@ class Preset:
 
     def written(self, key: str) -> str:
         """The file's key of a constant: ``pack.fixed`` there says what ``pack.rays.fixed`` is."""
-        first, _, last = key.partition(".")
-        candidates = (key, f"{first}.{last.rpartition('.')[2]}", first)
-        return next(cited for cited in candidates if cited in self.sources)
+        return written(key, self.sources)
 
 
 def preset_names() -> list[str]:
@@ -117,8 +127,10 @@ def _preset(name: str, document: Document, *, own: bool = False) -> Preset:
     cited = Cited()
     values = values_of(data["constants"], cited, places, unsaid=OVERRIDDEN if own else "")
     constants = structure(Constants, values, places)
+    ranges = ranges_of(values, cited, places)
     description = " ".join(str(data["description"]).split())
-    return Preset(name, description, constants, cited.texts, cited.sources, base)
+    spans = spans_of(cited)
+    return Preset(name, description, constants, cited.texts, cited.sources, spans, ranges, base)
 
 
 def machine(
@@ -164,7 +176,7 @@ def layered(
     layers = Layers()
     for layer in (load_preset(preset), costs, own):
         if layer is not None:
-            layers.put(layer.constants, layer.source)
+            layers.put(layer.constants, layer.source, layer.ranges)
     if own is not None:
         layers.refuse_strangers(own.constants)
     layers.put(overrides, lambda key: OVERRIDDEN)

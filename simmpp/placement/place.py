@@ -29,7 +29,7 @@ def place(
     require_kind("memory", memory, Memory)
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
-    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    starts_on = _starts(rules, workload, processors, seed)
     owner_of = _owners(rules, workload, starts_on, processors, seed)
     offsets, objects = replicas(workload, owner_of, starts_on, processors, memory, seed)
     return Placement(
@@ -42,6 +42,12 @@ def place(
         transient_bytes=memory.kept_bytes,
         capacity=memory.bounds,
     )
+
+
+def _starts(rules: PlacementRules, workload: Workload, processors: int, seed: int) -> Ids:
+    """The PE of each primary ray: all samples of a pixel start where it is dealt to."""
+    of_pixels = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    return np.tile(of_pixels, workload.samples) if workload.samples > 1 else of_pixels
 
 
 def _owners(
@@ -79,7 +85,7 @@ def rotated(
     Source: systematic sampling (Cochran 1977, Sampling Techniques, chapter 8), along a sweep.
     """
     n_objects = workload.n_objects
-    starts_on = pixel_pes(rules.pixels, workload.picture, processors, seed)
+    starts_on = _starts(rules, workload, processors, seed)
     owner_of = _owners(rules, workload, starts_on, processors, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]
     held = [_turns(_circle(owner_of, pe, seed), owner_of, counts) for pe in range(processors)]

@@ -41,7 +41,7 @@ class UsesByPE:
 
 def _tests(workload: Workload) -> tuple[NDArray[np.int64], Ids]:
     """The ray and the object of each test at these pixels."""
-    rows, columns = np.divmod(workload.pixels, workload.picture[1])
+    rows, columns = np.divmod(workload.pixels % workload.n_pixels, workload.picture[1])
     sampled = (rows % COARSE_STEP == 0) & (columns % COARSE_STEP == 0)
     lengths = np.diff(workload.itinerary_offsets)
     tested = np.repeat(sampled, lengths)

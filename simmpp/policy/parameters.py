@@ -39,6 +39,7 @@ from simmpp.common.strict import (
 from simmpp.common.units import shown
 from simmpp.common.validate import MOST_COUNT
 from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
+from simmpp.policy.cost import COST
 from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
 from simmpp.policy.holders import HOLDERS
 from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
@@ -67,6 +68,7 @@ POLICIES: dict[str, Policy] = {
     "concurrent": CONCURRENT_DATAFLOW,
     "replicated": REPLICATED,
     "holders": HOLDERS,
+    "cost": COST,
 }
 REFERENCE, CEILING = "object", "replicated"
 """Run with every point: what profits are measured against, and no dataflow at all."""

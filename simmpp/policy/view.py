@@ -83,6 +83,24 @@ class View:
     random: int
     """A draw of 0 <= random < 2^63 for this question, made if a hook reads it: Philox4x64-10 with a
     key from the seed and the PE, and the PE's draws so far as counter."""
+    finished: int
+    """Rays that this PE has finished."""
+    busy_ps: int
+    """Time that it has worked; of an activity that is not over, the work before its dispatch."""
+    compute_ps: int
+    """Of this, time in tests and rays, and not in messages."""
+    fetched: int
+    """Objects that have come because it had asked for them."""
+    released: int
+    """Rays that these made ready."""
+    objects: int
+    """``send``: different objects that the waiting rays need next; ``ask``: 1."""
+    fetch_ps: int
+    """What fetching these from their owners would cost this PE, each request and object a message
+    of its own."""
+    fetch_flight_ps: int
+    """Time in between, one after the other: flights without contention, and what answering takes.
+    """
 
     if TYPE_CHECKING:
 
@@ -90,12 +108,14 @@ class View:
             """One of the policy's own numbers."""
 
 
-SELF, LOADS, WAY, OBJECT, RANDOM = (1 << n for n in range(5))
+SELF, LOADS, WAY, OBJECT, RANDOM, DONE, WANTED = (1 << n for n in range(7))
 GROUPS = {
     SELF: ("now_ps", "me", "ready", "held_bytes"),
     LOADS: ("known_load", "age_ps", "in_flight"),
     WAY: ("hops", "send_ps", "receive_ps", "flight_ps"),
     OBJECT: ("object", "object_bytes", "test_ps", "owner", "holders", "requests"),
     RANDOM: ("random",),
+    DONE: ("finished", "busy_ps", "compute_ps", "fetched", "released"),
+    WANTED: ("objects", "fetch_ps", "fetch_flight_ps"),
 }
 """Fields that are looked up together, if a hook reads any of them; the others always are there."""

@@ -12,6 +12,7 @@ from simmpp.machine.topology import topology_of
 from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
+from simmpp.workload.describe import primaries
 
 Cell = Callable[[PolicyRun], str]
 
@@ -24,7 +25,6 @@ def measures(runs: Sequence[PolicyRun]) -> list[tuple[str, list[str]]]:
 def heading(point: Point) -> str:
     """Two lines that say what was simulated."""
     workload, machine, placement = point.workload, point.machine, point.placement
-    rows, columns = workload.picture
     network = topology_of(machine)
     memory = point.config.memory
     room = (
@@ -33,7 +33,7 @@ def heading(point: Point) -> str:
         else f"{float(memory.fraction):g} of the scene"
     )
     return (
-        f"{workload.name}: {columns} x {rows} primary rays, "
+        f"{workload.name}: {primaries(workload)}, "
         f"{counted(workload.n_rays, 'ray')} in all, "
         f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
         f"{machine.name}: {counted(machine.processors, 'PE')} ({network}), memory {room} on each "

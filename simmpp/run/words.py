@@ -14,6 +14,7 @@ PAPER_WORDS = {
     "concurrent": "concurrent dataflow",
     "replicated": "replicated scene",
     "holders": "dataflow to all holders",
+    "cost": "dataflow by estimated costs",
 }
 """Policies in the paper's words; a label of the user stays as it is."""
 ALONG = {"fraction": "the fraction of the scene", "processors": "the number of PEs"}
@@ -23,6 +24,7 @@ ACTIONS = {
     "concurrent": "Let each node choose",
     "replicated": "Hold everything everywhere",
     "holders": "Let each node choose among all that hold the object",
+    "cost": "Let each node choose by what either is estimated to cost",
 }
 """What one does who follows a policy, for those who have not read the paper."""
 SHORT = {"fraction": "x", "processors": "PEs"}

@@ -6,13 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.errors import WorkloadError
-from simmpp.workload.workload import ARRAYS, OBJECT_KINDS, PRIMARY, RAY_KINDS, SHADOW, Workload
+from simmpp.workload.workload import (
+    ARRAYS,
+    BARREN,
+    MOST_TEST_SCALE,
+    OBJECT_KINDS,
+    OPTIONAL,
+    PARTICLE,
+    RAY_KINDS,
+    ROOTS,
+    Workload,
+)
 
 
 def check(workload: Workload, where: str) -> None:
     """Raise WorkloadError, naming ``where``, unless the arrays fit together."""
     problem = _problem_of_shapes(workload) or _problem_of_rays(workload)
-    problem = problem or _problem_of_itineraries(workload)
+    problem = problem or _problem_of_itineraries(workload) or _problem_of_extras(workload)
     if problem:
         raise WorkloadError(problem, where=where)
 
@@ -26,14 +36,15 @@ def _problem_of_shapes(workload: Workload) -> str:
             return f"{name} is {array.dtype}, expected {np.dtype(dtype)}"
         if array.ndim != (2 if name == "object_centroids" else 1):
             return f"{name} has {array.ndim} dimensions"
-        expected = lengths.get(name, n_objects if name.startswith("object_") else n)
-        if name == "object_test_ps" and len(array) == 0:
+        per_row = {"object": n_objects, "root": workload.n_primaries}
+        expected = lengths.get(name, per_row.get(name.partition("_")[0], n))
+        if name in OPTIONAL and len(array) == 0:
             continue
         if name != "itinerary_objects" and len(array) != expected:
             return f"{name} has {len(array)} entries, expected {expected}"
     if workload.object_centroids.shape[1] != 3:
         return f"object_centroids has {workload.object_centroids.shape[1]} columns, expected 3"
-    if min(workload.picture) < 1 or workload.n_primaries > n:
+    if min(*workload.picture, workload.samples) < 1 or workload.n_primaries > n:
         return f"picture {workload.picture} does not fit {n} rays"
     return ""
 
@@ -42,7 +53,8 @@ def _problem_of_rays(workload: Workload) -> str:
     n, first = workload.n_rays, workload.n_primaries
     numbers = np.arange(n)
     kinds, parents, pixels = workload.kinds, workload.parents, workload.pixels
-    if (kinds >= len(RAY_KINDS)).any() or ((kinds == PRIMARY) != (numbers < first)).any():
+    begins = np.isin(kinds, ROOTS)
+    if (kinds >= len(RAY_KINDS)).any() or (begins != (numbers < first))[kinds != PARTICLE].any():
         return "kinds of rays do not fit the picture"
     if (parents[:first] != -1).any() or (pixels[:first] != numbers[:first]).any():
         return "a primary ray has a parent or another's pixel"
@@ -55,7 +67,7 @@ def _problem_of_rays(workload: Workload) -> str:
         return "a ray comes before its parent"
     if (pixels[first:] != pixels[parents[first:]]).any():
         return "a ray has another pixel than its parent"
-    if (np.diff(offsets)[(kinds == SHADOW) | (workload.hits < 0)] > 0).any():
+    if (np.diff(offsets)[np.isin(kinds, BARREN) | (workload.hits < 0)] > 0).any():
         return "a shadow ray, or one that hits nothing, has children"
     return ""
 
@@ -81,6 +93,28 @@ def _problem_of_itineraries(workload: Workload) -> str:
     if not np.isfinite(workload.object_centroids).all():
         return "object_centroids are not finite"
     return ""
+
+
+def _problem_of_extras(workload: Workload) -> str:
+    rounds, homes, weights = workload.root_rounds, workload.root_homes, workload.root_weights
+    if len(rounds) and (rounds.min() < 0 or first_gap(rounds) >= 0):
+        return "root_rounds leave out a round"
+    if len(homes) and (homes.min() < -1 or homes.max() >= workload.n_objects):
+        return f"root_homes names an object outside 0 ... {workload.n_objects - 1}"
+    if not (np.isfinite(weights) & (weights >= 0)).all():
+        return "a root has a weight that is negative, or not finite"
+    if (workload.ray_test_scales > MOST_TEST_SCALE).any():
+        return f"a ray's tests cost more than 2^{MOST_TEST_SCALE} of the object's"
+    if (workload.object_results < 0).any():
+        return "an object has results of a negative size"
+    return ""
+
+
+def first_gap(rounds: NDArray[np.signedinteger]) -> int:
+    """The least round below the greatest that no root is of; -1 if there is none."""
+    found = np.unique(rounds)  # not a count of each: the greatest may be 2^31
+    gaps = np.flatnonzero(found != np.arange(len(found)))
+    return int(gaps[0]) if len(gaps) else -1
 
 
 def is_cut(offsets: NDArray[np.signedinteger], n: int, first: int, last: int) -> bool:

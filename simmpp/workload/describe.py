@@ -10,6 +10,13 @@ from simmpp.workload.workload import OBJECT_KINDS, RAY_KINDS, Workload
 Fact = dict[str, int | float | str]
 
 
+def primaries(workload: Workload) -> str:
+    """``512 x 512 primary rays``."""
+    rows, columns = workload.picture
+    each = f"pixels with {workload.samples} " if workload.samples > 1 else ""
+    return f"{columns} x {rows} {each}primary rays"
+
+
 def rays_by_kind(workload: Workload) -> list[Fact]:
     """One row per kind of ray that occurs, and one for all."""
     lengths = np.diff(workload.itinerary_offsets)

@@ -2,7 +2,10 @@
 
 A workload holds no policy and no machine. Rays are numbered generation by generation: first the
 primary rays in pixel order, then all children of depth 2 in the order of their parents, and so on,
-so the children of a ray are neighbours, in the order reflected, refracted, shadow by light.
+so the children of a ray are neighbours, by kind with shadow rays, by light, the last.
+
+What only some workloads have stands in arrays that are empty where they don't: then every ray is of
+round 0, starts where its pixel is dealt to, and so on.
 """
 
 from __future__ import annotations
@@ -16,8 +19,16 @@ from numpy.typing import NDArray
 
 from simmpp.common.documented import documented
 
-PRIMARY, REFLECTED, REFRACTED, SHADOW = range(4)
-RAY_KINDS = ("primary", "reflected", "refracted", "shadow")
+PRIMARY, REFLECTED, REFRACTED, SHADOW, PARTICLE, FORM_FACTOR, DIFFUSE = range(7)
+RAY_KINDS = ("primary", "reflected", "refracted", "shadow", "particle", "form_factor", "diffuse")
+ROOTS = (PRIMARY, PARTICLE, FORM_FACTOR)
+"""Kinds that a ray without a parent may be of; of these only a particle may have one."""
+BARREN = (SHADOW, FORM_FACTOR)
+"""Kinds that spawn nothing."""
+FIRST_REPEATING = PARTICLE
+"""From this kind on an itinerary may name an object again: a particle comes back to a cell."""
+MOST_TEST_SCALE = 16
+"""So that no test takes longer than int64 can count: an object's is at most 2^44 ps."""
 SPHERE, CONE, POLYGON, MESH = range(4)
 OBJECT_KINDS = ("sphere", "cone", "polygon", "mesh")
 
@@ -37,7 +48,7 @@ class Workload:
     picture: tuple[int, int]
     """Rows and columns of primary rays; rays 0 ... rows * columns - 1 are primary, row by row."""
     kinds: NDArray[np.uint8]
-    """(n,) uint8: PRIMARY, REFLECTED, REFRACTED or SHADOW."""
+    """(n,) uint8: an index into RAY_KINDS."""
     parents: NDArray[np.int32]
     """(n,) int32: the ray that spawned this one; -1 for a primary ray."""
     child_offsets: NDArray[np.int32]
@@ -65,6 +76,22 @@ class Workload:
     object_test_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(N,) int64 picoseconds: what one test of the object costs, whatever its kind; (0,) where the
     machine decides by kind and triangles."""
+    samples: int = 1
+    """Primary rays of each pixel. They are numbered pass after pass: first one of each pixel, row
+    by row, then another of each; n0 = samples * rows * columns."""
+    root_rounds: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    """(n0,) int32: the roots of round k + 1 start when round k is over, with all descendants. No
+    number below the greatest is left out; (0,) if all are of round 0."""
+    root_homes: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    """(n0,) int32: the object whose owner starts the root; -1 for one that is dealt with its pixel;
+    (0,) if all are."""
+    root_weights: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    """(n0,) float64: what the root counts in results, no machine reads it; (0,) if all count 1."""
+    ray_test_scales: NDArray[np.uint8] = field(default_factory=lambda: np.zeros(0, np.uint8))
+    """(n,) uint8: tests of this ray cost 2^k of the object's; (0,) if all cost as much."""
+    object_results: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(N,) int64 bytes: of the object's tally, which lives with its owner; (0,) if there is none.
+    """
 
     @property
     def n_rays(self) -> int:
@@ -74,7 +101,17 @@ class Workload:
     @property
     def n_primaries(self) -> int:
         """Number of primary rays, n0 in the paper."""
+        return self.picture[0] * self.picture[1] * self.samples
+
+    @property
+    def n_pixels(self) -> int:
+        """Rows times columns; root i is of pixel i mod n_pixels."""
         return self.picture[0] * self.picture[1]
+
+    @property
+    def n_rounds(self) -> int:
+        """Number of rounds, at least 1."""
+        return 1 + int(self.root_rounds.max(initial=0))
 
     @property
     def n_objects(self) -> int:
@@ -93,6 +130,12 @@ ARRAYS: dict[str, type[np.generic]] = {
     if get_origin(hint) is np.ndarray
 }
 """Type of the entries of each array of a workload."""
+OPTIONAL = tuple(
+    field.name
+    for field in dataclasses.fields(Workload)
+    if field.default_factory is not dataclasses.MISSING
+)
+"""Arrays that are empty where they say nothing."""
 
 
 def frozen(workload: Workload) -> Workload:

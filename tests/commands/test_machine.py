@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from calls import refused, simmpp
 
-from simmpp.machine.presets import OVERRIDDEN
+from simmpp.machine.presets import OVERRIDDEN, load_own
 
 OURS = """\
 description: Our nodes
@@ -37,7 +37,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def printed(*arguments: str) -> dict[str, tuple[str, str]]:
-    """Value and source by constant."""
+    """Value, and source or range, by constant."""
     done = simmpp("machine", *arguments)
     assert done.exit_code == 0, done.stderr
     lines = (re.split(r" {2,}", line.strip()) for line in done.stdout.splitlines())
@@ -50,8 +50,18 @@ def test_a_file_is_printed_with_what_its_preset_says() -> None:
     assert lines["send_startup"] == ("200 ns", OVERRIDDEN)
     assert lines["receive_startup"] == ("300 ns", "our log book, 2026")
     assert lines["levels.system.bandwidth"] == ("12.5 GB/s", OVERRIDDEN)
-    assert lines["ray_bytes"][0] == "128 B" and lines["ray_bytes"][1].startswith("ESTIMATE")
+    assert lines["ray_bytes"] == ("128 B", "64 B to 184 B")
     assert lines["topology"][0] == "levels"
+
+
+def test_ones_own_constants_have_ranges_with_a_source_or_without() -> None:
+    ours = OURS.replace("0.2 us", "{value: 0.2 us, range: [0.1 us, 400 ns]}")
+    source = 'range: [0.3 us, 0.3 us], source: "our'
+    Path("ours.yaml").write_text(ours.replace('source: "our', source))
+    lines = printed("ours.yaml")
+    assert lines["send_startup"] == ("200 ns", "100 ns to 400 ns")
+    assert lines["receive_startup"] == ("300 ns", "our log book, 2026")  # one value is no range
+    assert load_own("ours.yaml").known["send_startup"][:3] == (200_000, 100_000, 400_000)
 
 
 def test_a_configuration_is_printed_with_what_it_sets() -> None:
@@ -87,6 +97,18 @@ MISTAKES = [
     (
         "{description: x, constants: {}}",
         "ours.yaml: expected the keys description, based_on, const",
+    ),
+    (
+        OURS.replace("size: 2", "size: {value: 2, range: 4}"),
+        "ours.yaml:7: levels.node.size.range: ",
+    ),
+    (
+        OURS.replace("0.2 us", "{value: 0.2 us, range: [1 us, 3 us]}"),
+        "ours.yaml:4: send_startup: value 0.2 us: expected in its range, 1 us to 3 us",
+    ),
+    (
+        OURS.replace("0.2 us", "{value: 0.2 us, range: [0, 3]}"),
+        "ours.yaml:4: send_startup: value 3: expected a time",
     ),
     (OURS.replace("size: 2", "sise: 2"), "ours.yaml:7: levels.node: unknown key 'sise'"),
 ]

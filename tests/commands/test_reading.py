@@ -91,7 +91,7 @@ def test_run_says_what_the_reading_set_and_what_it_did_not() -> None:
     record = json.loads(Path("r/run.json").read_text())
     assert record["config"]["reading"] == "mixed"
     sources = record["machines"][0]["sources"]
-    assert sources["quantum"].startswith("ESTIMATE, range 16-256")
+    assert sources["quantum"].startswith("ESTIMATE: Nebel 1998")
     with open("r/results.csv", newline="") as file:
         assert "reading" not in next(csv.reader(file))
 

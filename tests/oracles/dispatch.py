@@ -103,7 +103,7 @@ class Dispatch(Views):
             waiting = sum(map(len, groups))
             if not self.is_asked(waiting, self.rules.batch, nothing_else):
                 continue
-            enough = send(self.view_of_destination(pe, owner, waiting, nothing_else, draws))
+            enough = send(self.view_of_destination(pe, owner, groups, nothing_else, draws))
             while groups and len(rays) < enough:
                 rays += groups.pop(0)
             if rays:

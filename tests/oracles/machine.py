@@ -57,7 +57,7 @@ class Simulation(Dispatch):
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
         self.sample_loads(time)
-        pe.ended_load = pe.load
+        pe.ended_load, pe.worked = pe.load, pe.paid.copy()
         pe.refresh_allowed = True
         if pe.inbox:
             message = pe.inbox.popleft()
@@ -114,6 +114,8 @@ class Simulation(Dispatch):
         released = waiting if self.policy.merge_requests else waiting[:1]
         pe.unfile(released)
         pe.granted.update(released)
+        pe.fetched += 1
+        pe.released += len(released)
         pe.make_ready(released, self.ready_order)
         if pe.rays_of(obj) and pe.in_flight[obj] == 0:
             pe.sendable_since[obj] = pe.next_rank()
@@ -178,6 +180,7 @@ class Simulation(Dispatch):
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]
         pe.ready.remove(ray)
+        pe.finished += 1
         pe.make_ready(children, self.ready_order)
         self.sample_rays(pe)
         return clock
@@ -185,7 +188,7 @@ class Simulation(Dispatch):
     def dispatch(self, time: int, pe: PE) -> None:
         """The work is done: send, and begin anew."""
         self.sample_loads(time)
-        messages_before = len(self.ledger.sent)
+        messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
         self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:

@@ -90,6 +90,16 @@ class PE:
     """For the policy."""
     draws: int = 0
     """Random numbers that the policy was given."""
+    paid: Counter[str] = field(default_factory=Counter)
+    """Account: time that all its work has taken."""
+    worked: Counter[str] = field(default_factory=Counter)
+    """The same when the latest activity or its dispatch began."""
+    finished: int = 0
+    """Rays that ended here."""
+    fetched: int = 0
+    """Objects that have come on request."""
+    released: int = 0
+    """Rays that these made ready."""
 
     @property
     def load(self) -> int:

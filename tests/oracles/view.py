@@ -58,16 +58,22 @@ class Views(World):
             parameter=[*self.policy.numbers, *[0] * 8][:8],
             memory=pe.memory,
             random=random_draw(self.seed, pe) if draws else None,
+            finished=pe.finished,
+            busy_ps=sum(pe.worked.values()),
+            compute_ps=pe.worked["compute"],
+            fetched=pe.fetched,
+            released=pe.released,
             **numbers(self.policy, self.workload.n_primaries, self.nb),
             **own,
         )
 
     def view_of_destination(
-        self, pe: PE, other: int, waiting: int, nothing_else: bool, draws: bool
+        self, pe: PE, other: int, groups: list[list[int]], nothing_else: bool, draws: bool
     ) -> View:
-        """What send is shown."""
-        view = self.view(pe, other, nothing_else, draws)
+        """What send is shown; the rays that may go are grouped by what they wait for."""
+        view, waiting = self.view(pe, other, nothing_else, draws), sum(map(len, groups))
         view.waiting, view.unasked = waiting, 0
+        self.show_fetches(view, pe, [self.next_object(rays[0]) for rays in groups])
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
@@ -80,17 +86,31 @@ class Views(World):
         self, pe: PE, obj: int, unasked: int, nothing_else: bool, draws: bool
     ) -> View:
         """What ask is shown."""
-        owner, machine, n_bytes = self.owners[obj], self.machine, self.object_bytes[obj]
+        owner = self.owners[obj]
         view = self.view(pe, owner, nothing_else, draws)
-        view.object, view.owner, view.object_bytes = obj, owner, n_bytes
-        view.test_ps = intersection_ps(machine, self.workload, obj)
+        view.object, view.owner, view.object_bytes = obj, owner, self.object_bytes[obj]
+        view.test_ps = intersection_ps(self.machine, self.workload, obj)
         view.holders = sum(obj in each.resident for each in self.pes)
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]
-        asked, fetched = machine.request_bytes, n_bytes
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], asked)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[OBJECT], fetched)
-        view.flight_ps = (
+        view.send_ps, view.receive_ps, view.flight_ps = self.fetch_ps(pe, obj)
+        self.show_fetches(view, pe, [obj])
+        return view  # type: ignore[return-value]
+
+    def show_fetches(self, view: SimpleNamespace, pe: PE, objects: list[int]) -> None:
+        """What fetching all of these objects would take."""
+        costs = [self.fetch_ps(pe, obj) for obj in objects]
+        view.objects = len(objects)
+        view.fetch_ps = sum(there + back for there, back, _ in costs)
+        view.fetch_flight_ps = sum(between for *_, between in costs)
+
+    def fetch_ps(self, pe: PE, obj: int) -> tuple[int, int, int]:
+        """Of a request, of the object, and of all that is in between."""
+        owner, machine = self.owners[obj], self.machine
+        asked, fetched = machine.request_bytes, self.object_bytes[obj]
+        ask_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], asked)
+        receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[OBJECT], fetched)
+        between_ps = (
             network_ps(machine, pe.number, owner, asked)
             + machine.receive_startup_ps
             + copy_ps(machine.unpack[REQUEST], asked)
@@ -98,7 +118,7 @@ class Views(World):
             + copy_ps(machine.pack[OBJECT], fetched)
             + network_ps(machine, owner, pe.number, fetched)
         )
-        return view  # type: ignore[return-value]
+        return ask_ps, receive_ps, between_ps
 
     def known_load(self, clock: int, pe: PE, other: int) -> tuple[int, int]:
         """What a PE knows of another's load, and for how long it has."""

@@ -81,6 +81,7 @@ class World:
 
     def pay(self, account: str, pe: PE, clock: int, cost: int) -> int:
         """Charge a PE; returns the time when it has paid."""
+        pe.paid[account] += cost
         return self.ledger.pay(account, pe.number, clock, cost)
 
     def send(self, clock: int, pe: PE, destination: int, parts: Sequence[Part]) -> int:
@@ -138,4 +139,8 @@ class World:
 
     def pinned(self, pe: PE) -> set[int]:
         """Fetched objects that are there for a test that is to be made."""
-        return {self.itineraries[ray][self.positions[ray]] for ray in pe.granted}
+        return {self.next_object(ray) for ray in pe.granted}
+
+    def next_object(self, ray: int) -> int:
+        """What a ray is to be tested against next."""
+        return self.itineraries[ray][self.positions[ray]]

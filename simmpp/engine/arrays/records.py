@@ -37,6 +37,9 @@ PE = np.dtype(
         ("pixel_end", "i4"),  # and end
         ("cut", "i4"),  # 1: the first ready ray was cut by the quantum
         ("draws", "i8"),  # random numbers that its policy was given
+        ("finished", "i8"),  # rays that ended here
+        ("fetched", "i8"),  # objects that have come on request
+        ("released", "i8"),  # rays that these made ready
     ],
     align=True,
 )

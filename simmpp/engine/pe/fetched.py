@@ -25,6 +25,7 @@ def admit_object(s: Run, me: int, obj: int, links: int) -> None:
     miss_row = find(misses(s), me * s.n_objects + obj)
     miss = miss_rows(s)[miss_row]
     miss.requests -= 1
+    pes(s)[me].fetched += 1
     if miss.pinned == 0 and miss.transient == 0:
         pes(s)[me].held_bytes += object_bytes(s)[obj]
     _release(s, me, miss_row, links)
@@ -53,6 +54,7 @@ def _release(s: Run, me: int, miss_row: int, links: int) -> None:
     miss.first = rays(s)[tail].next
     miss.n -= n
     miss.pinned += n
+    pes(s)[me].released += n
     make_ready(s, me, head, tail, n)
 
 

@@ -68,6 +68,7 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     # The ray itself leaves; what it has hit brings forth its children here, whoever owns it.
     pe.load += end - child - 1
     pe.peak_rays = max(pe.peak_rays, pe.load)
+    pe.finished += 1
     s.rays_done += 1
     s.rays_left += end - child - 1
     s.last_ray_ps = max(s.last_ray_ps, now_ps)

@@ -20,10 +20,10 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import copy_ps
 from simmpp.engine.pe.peers import age_ps, known_load
-from simmpp.machine.messages import OBJECT as OBJECT_MESSAGE
-from simmpp.machine.messages import RAYS, REQUEST
+from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
+from simmpp.machine.messages import RAYS
 from simmpp.machine.topology import hops
-from simmpp.policy.view import LOADS, OBJECT, RANDOM, SELF, WAY, View
+from simmpp.policy.view import DONE, LOADS, OBJECT, RANDOM, SELF, WANTED, WAY, View
 
 
 @kernel
@@ -52,6 +52,8 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
         view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
         view.receive_ps = s.receive_startup_ps + copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
         view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+    if s.send_reads & WANTED:
+        show_wanted(s, view, me, peer_row)
     _show_self(s, view, me, now_ps, s.send_reads)
 
 
@@ -73,21 +75,10 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
         view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
     if reads & WAY:
         view.hops = hops(topology(s), me, other)
-        _show_fetch(s, view, me, other, object_bytes(s)[obj])
+        view.send_ps, view.receive_ps, view.flight_ps = fetch_ps(s, me, obj)
+    if reads & WANTED:
+        show_fetch(s, view, me, obj)
     _show_self(s, view, me, now_ps, reads)
-
-
-@kernel
-def _show_fetch(s: Run, view: View, me: int, owner: int, n_bytes: int) -> None:
-    """What a fetch costs the PE, and how long it takes besides."""
-    costs, request_bytes = copy_costs(s), s.request_bytes
-    view.send_ps = s.send_startup_ps + copy_ps(costs[PACK + REQUEST], request_bytes)
-    view.receive_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + OBJECT_MESSAGE], n_bytes)
-    there_ps = flight_ps(s, me, owner, request_bytes + s.header_bytes)
-    back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    answer_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + REQUEST], request_bytes)
-    answer_ps += s.send_startup_ps + copy_ps(costs[PACK + OBJECT_MESSAGE], n_bytes)
-    view.flight_ps = there_ps + answer_ps + back_ps
 
 
 @kernel
@@ -104,6 +95,9 @@ def _show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
     if groups & SELF:
         view.now_ps, view.me = now_ps, me
         view.ready, view.held_bytes = pe.n_ready, pe.held_bytes
+    if groups & DONE:
+        view.finished, view.fetched, view.released = pe.finished, pe.fetched, pe.released
+        view.busy_ps, view.compute_ps = pe.compute_ps + pe.communication_ps, pe.compute_ps
     if groups & RANDOM:
         pe.draws += 1
         view.random = philox(s.random_key, me, pe.draws)

@@ -144,7 +144,7 @@ def motion_of(point: Point, run: PolicyRun, picture: NDArray[np.uint8] | None = 
         peak_bytes=result.pe_peak_bytes,
         pixel_cost_ps=pixel_costs(point),
         pixel_hops=pixel_hops(point, result),
-        pixel_owner=point.placement.pixel_pes.astype(np.int64).reshape(workload.picture),
+        pixel_owner=pixel_owners(point),
         picture=picture,
     )
 
@@ -197,6 +197,12 @@ def pixel_costs(point: Point) -> Ints:
     return _by_pixel(point, ray_ps)
 
 
+def pixel_owners(point: Point) -> Ints:
+    """The PE that each pixel starts on: (rows, columns)."""
+    first_pass = point.placement.pixel_pes[: point.workload.n_pixels]
+    return first_pass.astype(np.int64).reshape(point.workload.picture)
+
+
 def pixel_hops(point: Point, result: Result) -> Ints:
     """Links crossed for the rays of each pixel's tree: (rows, columns)."""
     rays = result.ray_hops
@@ -206,6 +212,6 @@ def pixel_hops(point: Point, result: Result) -> Ints:
 def _by_pixel(point: Point, of_rays: NDArray[np.integer]) -> Ints:
     """Sums over the rays of each pixel's tree."""
     workload = point.workload
-    total = np.zeros(workload.n_primaries, np.int64)
-    np.add.at(total, workload.pixels, of_rays)
+    total = np.zeros(workload.n_pixels, np.int64)
+    np.add.at(total, workload.pixels % workload.n_pixels, of_rays)
     return total.reshape(workload.picture)

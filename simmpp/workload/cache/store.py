@@ -79,6 +79,7 @@ def save(workload: Workload, path: str | os.PathLike[str]) -> None:
         "name": workload.name,
         "digest": workload.digest,
         "picture": workload.picture,
+        "samples": workload.samples,
         "shapes": {name: array.shape for name, array in arrays.items()},
     }
     header["checksum"] = _checksum(header, arrays)
@@ -115,7 +116,8 @@ def load(path: str | os.PathLike[str]) -> Workload:
         if checksum != _checksum(header, arrays):
             raise ValueError("damaged, its checksum does not fit")
         rows, columns = header["picture"]
-        workload = Workload(header["name"], header["digest"], (rows, columns), **arrays)
+        picture, samples = (rows, columns), header["samples"]
+        workload = Workload(header["name"], header["digest"], picture, **arrays, samples=samples)
     except DAMAGED as error:
         problem = " ".join(str(error).split())[:200]
         raise WorkloadError(f"not a workload: {problem}", where=str(path)) from None

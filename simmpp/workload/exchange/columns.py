@@ -14,8 +14,11 @@ from simmpp.common.errors import WorkloadError
 from simmpp.scene.nff_words import LARGEST
 
 WORKLOAD_SUFFIXES = (".parquet", ".npz")
-RAY_COLUMNS = ("itinerary", "parent", "kind", "pixel", "hit", "distance")
-OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "x", "y", "z")
+RAY_COLUMNS = (
+    *("itinerary", "parent", "kind", "pixel", "hit", "distance"),
+    *("round", "home", "weight", "test_scale"),
+)
+OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "results", "x", "y", "z")
 ITINERARY = ("itinerary_offsets", "itinerary_objects")
 """The two columns of rays that hold one itinerary per row, as CSR."""
 Column = NDArray[Any]
@@ -123,4 +126,4 @@ class Content:
     rays: CheckedTable
     objects: CheckedTable
     picture: Column | None
-    """Rows and columns of primary rays, if the file says."""
+    """Rows and columns of primary rays, and how many each pixel has, if the file says."""

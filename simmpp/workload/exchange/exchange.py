@@ -31,6 +31,7 @@ from simmpp.workload.exchange.columns import (
     is_workload,
 )
 from simmpp.workload.exchange.rays import rays_of
+from simmpp.workload.exchange.roots import root_columns
 from simmpp.workload.workload import MESH, OBJECT_KINDS, RAY_KINDS, Workload, frozen
 
 MOST_OBJECT_BYTES = 2**40
@@ -51,15 +52,14 @@ def import_workload(path: str | os.PathLike[str]) -> Workload:
     path = Path(path)
     tables = _read(path)
     arrays = rays_of(tables.rays, tables.objects.rows) | _objects_of(tables.objects)
-    picture = _picture(tables, int((arrays["parents"] < 0).sum()))
+    picture, samples = _picture(tables, int((arrays["parents"] < 0).sum()))
     # Of what was read, not of the file: the same rays in Parquet and in npz are one workload.
-    digest = hashlib.sha256(repr(picture).encode())
+    digest = hashlib.sha256(repr((*picture, samples) if samples > 1 else picture).encode())
     for name in sorted(arrays):
         digest.update(f"{name} {arrays[name].shape}".encode())
         digest.update(np.ascontiguousarray(arrays[name]).data)
-    workload = frozen(
-        Workload(name=in_utf8(path.stem), digest=digest.hexdigest(), picture=picture, **arrays)
-    )
+    name = in_utf8(path.stem)
+    workload = frozen(Workload(name, digest.hexdigest(), picture, **arrays, samples=samples))
     check(workload, str(path))
     return workload
 
@@ -82,18 +82,23 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
         "pixel": workload.pixels,
         "hit": workload.hits,
         "distance": np.where(finite, workload.hit_distances, 0.0),
+        **root_columns(workload),
     }
+    if len(workload.ray_test_scales):
+        rays["test_scale"] = workload.ray_test_scales
     objects: dict[str, Column] = {
         "bytes": workload.object_bytes,
         "kind": np.array(OBJECT_KINDS)[workload.object_kinds],
         "triangles": workload.object_triangles,
         **({"test_ps": workload.object_test_ps} if len(workload.object_test_ps) else {}),
+        **({"results": workload.object_results} if len(workload.object_results) else {}),
         **dict(zip("xyz", workload.object_centroids.T, strict=True)),
     }
+    sides = (*workload.picture, workload.samples) if workload.samples > 1 else workload.picture
     tables = Content(
         CheckedTable(str(path), "", workload.n_rays, rays),
         CheckedTable(str(path), "", workload.n_objects, objects),
-        np.array(workload.picture),
+        np.array(sides),
     )
     _format(path).write(tables, path)
 
@@ -129,26 +134,29 @@ def _objects_of(table: CheckedTable) -> dict[str, NDArray[Any]]:
     mesh = np.full(table.rows, MESH, np.uint8)
     sizes = table.integers("bytes", 0, MOST_OBJECT_BYTES, 0, "a size from 0 to 2^40 bytes")
     costs = table.integers("test_ps", 0, LONGEST_PS, 0, "a time from 0 to 10 s in picoseconds")
-    if sizes.sum(dtype=np.float64) > MOST_OBJECT_BYTES * 2.0**20:
-        table.fail("bytes", "the sum is beyond 2^60")
+    results = table.integers("results", 0, MOST_OBJECT_BYTES, 0, "a size from 0 to 2^40 bytes")
+    for name, column in (("bytes", sizes), ("results", results)):
+        if column.sum(dtype=np.float64) > MOST_OBJECT_BYTES * 2.0**20:
+            table.fail(name, "the sum is beyond 2^60")
     return {
         "object_kinds": table.choices("kind", OBJECT_KINDS, mesh),
         "object_triangles": table.integers("triangles", 0, MOST_ROWS, 0).astype(np.int32),
         "object_bytes": sizes,
         "object_centroids": np.stack([table.numbers(axis) for axis in "xyz"], axis=1),
         "object_test_ps": costs if "test_ps" in table.columns else costs[:0],
+        **({"object_results": results} if results.any() else {}),
     }
 
 
-def _picture(tables: Content, n_primaries: int) -> tuple[int, int]:
-    """Rows and columns of primary rays; a list of rays is a picture that is one ray wide."""
+def _picture(tables: Content, n_primaries: int) -> tuple[tuple[int, int], int]:
+    """Rows and columns, and primary rays of each pixel; a list of rays is one ray wide."""
     if tables.picture is None:
-        return n_primaries, 1
+        return (n_primaries, 1), 1
     sides = tables.picture
-    whole = sides.dtype.kind in "iu" and sides.shape == (2,) and (sides > 0).all()
-    rows, columns = (int(side) for side in sides) if whole else (0, 0)
-    if rows * columns != n_primaries:
+    whole = sides.dtype.kind in "iu" and len(sides) in (2, 3) and (sides > 0).all()
+    rows, columns, samples = (*map(int, sides), 1)[:3] if whole else (0, 0, 0)
+    if rows * columns * samples != n_primaries:
         text = " ".join(map(str, sides.tolist()))[:40]
         expected = f"expected rows and columns of the {n_primaries} primary rays"
         raise WorkloadError(f"picture: value {text}: {expected}", where=tables.rays.where)
-    return rows, columns
+    return (rows, columns), samples

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
+from simmpp.workload.workload import FIRST_REPEATING, SHADOW
 
 Ints = NDArray[np.int64]
 
@@ -13,9 +14,10 @@ Ints = NDArray[np.int64]
 def by_generation(parents: Ints, kinds: NDArray[np.uint8], pixels: Ints) -> tuple[Ints, Ints]:
     """The rows of rays in their new order, and for each of them the row of its primary ray.
 
-    Primary rays (parent -1) come first, by pixel; then the children of each ray in turn, by kind;
-    ties by row. Rows that are in a cycle of parents, or come from one, are left out. Two trees as
-    another renderer may write them, and the order of their rows in a workload::
+    Primary rays (parent -1) come first, by pixel; then the children of each ray in turn, by kind
+    with shadow rays last; ties by row. Rows that are in a cycle of parents, or come from one, are
+    left out. Two trees as another renderer may write them, and the order of their rows in a
+    workload::
 
         row     0        1       2       3        4
         kind    primary  shadow  shadow  primary  reflected      order  3  0  2  4  1
@@ -26,7 +28,9 @@ def by_generation(parents: Ints, kinds: NDArray[np.uint8], pixels: Ints) -> tupl
     primaries = np.flatnonzero(parents < 0)
     primaries = primaries[np.argsort(pixels[primaries], kind="stable")]
     spawned = np.flatnonzero(parents >= 0)
-    children = spawned[np.lexsort((spawned, kinds[spawned], parents[spawned]))]
+    of_spawned = kinds[spawned]
+    keys = (spawned, of_spawned, of_spawned == SHADOW, parents[spawned])
+    children = spawned[np.lexsort(keys)]
     first_child = np.searchsorted(parents[children], np.append(rows, len(rows)))
     return _breadth_first(primaries, first_child, children)
 
@@ -64,10 +68,14 @@ def _least_of_cycle(parents: Ints, row: int) -> int:
 
 
 @njit
-def first_repeat(offsets: Ints, objects: Ints, n_objects: int) -> tuple[int, int]:
-    """The first (row, object) that an itinerary names twice, or (-1, -1)."""
+def first_repeat(
+    offsets: Ints, objects: Ints, n_objects: int, kinds: NDArray[np.uint8]
+) -> tuple[int, int]:
+    """The first (row, object) that an itinerary names twice and may not, or (-1, -1)."""
     seen = np.full(n_objects, -1, np.int64)
     for row in range(offsets.size - 1):
+        if kinds[row] >= FIRST_REPEATING:
+            continue
         for obj in objects[offsets[row] : offsets[row + 1]]:
             if seen[obj] == row:
                 return row, obj

@@ -23,10 +23,11 @@ from simmpp.workload.exchange.columns import (
     Content,
 )
 
-NULL_MEANS_NONE = ("parent", "hit")
+NULL_MEANS_NONE = ("parent", "hit", "home")
 """Columns in which a missing value is the same as -1."""
 PICTURE = b"picture"
-"""Key of the metadata of the rays' schema: rows and columns of primary rays, as ``512 512``."""
+"""Key of the metadata of the rays' schema: rows and columns of primary rays, as ``512 512``, and
+how many each pixel has, if it is not one."""
 
 
 PANDAS_INDEX = re.compile(r"__index_level_\d+__")

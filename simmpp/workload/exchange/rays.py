@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 
 from simmpp.workload.exchange.columns import ITINERARY, RAY_COLUMNS, CheckedTable
 from simmpp.workload.exchange.numbering import by_generation, first_repeat, regrouped, row_in_cycle
-from simmpp.workload.workload import PRIMARY, RAY_KINDS, REFLECTED, SHADOW
+from simmpp.workload.exchange.roots import roots_of
+from simmpp.workload.workload import (
+    BARREN,
+    MOST_TEST_SCALE,
+    PARTICLE,
+    PRIMARY,
+    RAY_KINDS,
+    REFLECTED,
+    ROOTS,
+)
 
 Ints = NDArray[np.int64]
 
@@ -21,7 +30,8 @@ def rays_of(table: CheckedTable, n_objects: int) -> dict[str, NDArray[Any]]:
     parents = table.integers("parent", -1, n - 1, -1, f"-1 or a row from 0 to {n - 1}")
     kinds = table.choices("kind", RAY_KINDS, np.where(parents < 0, PRIMARY, REFLECTED))
     _check_kinds(table, parents, kinds)
-    offsets, objects = _itineraries(table, n_objects)
+    offsets, objects = _itineraries(table, n_objects, kinds)
+    scales = table.integers("test_scale", 0, MOST_TEST_SCALE, 0).astype(np.uint8)
     n_children = np.bincount(parents[parents >= 0], minlength=n)
     hits = _hits(table, offsets, objects, n_children, n_objects)
     distances = np.where(hits < 0, np.inf, _distances(table, hits))
@@ -40,22 +50,27 @@ def rays_of(table: CheckedTable, n_objects: int) -> dict[str, NDArray[Any]]:
         "hit_distances": distances[order],
         "itinerary_offsets": new_offsets,
         "itinerary_objects": objects[entries].astype(np.int32),
+        **({"ray_test_scales": scales[order]} if scales.any() else {}),
+        **roots_of(table, parents, order, roots, n_objects),
     }
 
 
 def _check_kinds(table: CheckedTable, parents: Ints, kinds: NDArray[np.uint8]) -> None:
     if (parents >= 0).all():
         table.fail("parent", "there is no primary ray: expected -1 in at least one row")
-    wrong = np.flatnonzero((kinds == PRIMARY) != (parents < 0))
+    wrong = np.flatnonzero((np.isin(kinds, ROOTS) != (parents < 0)) & (kinds != PARTICLE))
     if len(wrong):
         row = int(wrong[0])
         has = f"has parent {parents[row]}" if parents[row] >= 0 else "has no parent"
         table.fail("kind", f"a {RAY_KINDS[kinds[row]]} ray {has}", row)
-    fertile = (parents < 0) | (kinds[parents] != SHADOW)
-    table.require(fertile, "parent", "no shadow ray, which spawns nothing")
+    for barren in BARREN:
+        fertile = (parents < 0) | (kinds[parents] != barren)
+        table.require(fertile, "parent", f"no {RAY_KINDS[barren]} ray, which spawns nothing")
 
 
-def _itineraries(table: CheckedTable, n_objects: int) -> tuple[Ints, Ints]:
+def _itineraries(
+    table: CheckedTable, n_objects: int, kinds: NDArray[np.uint8]
+) -> tuple[Ints, Ints]:
     """Offsets and objects, once they are found to fit the rays and the objects."""
     offsets, objects = (table.columns[name] for name in ITINERARY)
     for column in (offsets, objects):
@@ -71,7 +86,7 @@ def _itineraries(table: CheckedTable, n_objects: int) -> tuple[Ints, Ints]:
         expected = f"a row of the {n_objects} objects" if n_objects else "nothing: no objects"
         table.fail("itinerary", f"value {objects[entry]}: expected {expected}", row)
     objects = objects.astype(np.int64)
-    row, twice = first_repeat(offsets, objects, n_objects)
+    row, twice = first_repeat(offsets, objects, n_objects, kinds)
     if row >= 0:
         table.fail("itinerary", f"object {twice} occurs twice: expected each once", row)
     return offsets, objects

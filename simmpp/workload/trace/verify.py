@@ -168,7 +168,7 @@ def _difference(replayed: Traced, hits: Ints, problem: tuple[int, str] | None) -
 def _pixel_of(ray: int, replayed: Traced) -> tuple[int, int]:
     """Row and column of the picture that a ray belongs to."""
     workload = replayed.workload
-    pixel = int(workload.pixels[min(max(ray, 0), workload.n_rays - 1)])
+    pixel = int(workload.pixels[min(max(ray, 0), workload.n_rays - 1)]) % workload.n_pixels
     rows, columns = replayed.picture.pixels
     row, column = divmod(pixel, workload.picture[1])
     return min(row, rows - 1), min(column, columns - 1)

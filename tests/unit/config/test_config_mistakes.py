@@ -8,7 +8,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.config.config import load_config
 
 A_SHARE = "expected a share from 0 to 1, such as 0.1, 10% or 1/64"
-A_POLICY = "expected object, ray, concurrent, replicated or holders, or a mapping"
+A_POLICY = "expected object, ray, concurrent, replicated, holders or cost, or a mapping"
 PRODUCT = "expected three integers whose product is processors ="
 
 
@@ -127,7 +127,8 @@ MISTAKES = [
     ),
     (
         S + "policy: objct",
-        "c.yaml:2: policy: value 'objct': expected object, ray, concurrent, replicated or holders",
+        "c.yaml:2: policy: value 'objct': expected object, ray, concurrent, replicated, holders or"
+        " cost",
     ),
     (S + "policy: [ray, ray]", "c.yaml:2: policy: two are called 'ray': expected a label for each"),
     (

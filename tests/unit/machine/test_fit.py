@@ -96,8 +96,13 @@ def test_the_file_that_is_written_is_a_machine_with_these_constants(tmp_path: Pa
     assert level.gap_ps == pytest.approx(found.gap_s.value * 1e12, rel=1e-4)  # type: ignore[union-attr]
     one_way_ps = made.send_startup_ps + level.latency_ps + made.receive_startup_ps
     assert one_way_ps == pytest.approx(found.start_s.value * 1e12, rel=1e-4)
-    assert made.sources["latency"].startswith("ESTIMATE, range ")
-    assert made.sources["link_bandwidth"].startswith("t.csv, 95 % confidence ")
+    assert made.sources["latency"].startswith("ESTIMATE: ")
+    assert made.sources["link_bandwidth"] == "t.csv, 95 % confidence"
+    for key, of in {"link_bandwidth": found.bandwidth, "port_gap": found.gap_s}.items():
+        known, unit = own.known[key], 1 if key == "link_bandwidth" else 1e12
+        expected = [end * unit for end in (of.value, of.low, of.high)]  # type: ignore[union-attr]
+        assert [known.value, known.low, known.high] == pytest.approx(expected, rel=1e-3)
+    assert own.known["send_startup"].low == 0  # of an ESTIMATE as well
     assert made.header_bytes == 0  # what it costs is in what was measured
 
 

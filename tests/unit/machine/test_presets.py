@@ -1,14 +1,19 @@
 """The package's machines: complete, sourced, and overridden key by key."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 
 from simmpp.common.errors import ConfigError
+from simmpp.common.strict import structure
+from simmpp.machine.constants import Constants
 from simmpp.machine.machine import UNLIMITED, CopyCost, TestCost
-from simmpp.machine.presets import OVERRIDDEN, load_preset, machine, preset_names
+from simmpp.machine.presets import OVERRIDDEN, layered, load_preset, machine, preset_names
 
 TORI = ["bluegene-l", "t3d", "t3e", "t3e-shmem", "tpu-v4", "xe6-hopper"]
+CHOICES = ("topology",)
+"""Words, which have no range."""
 NAMES = sorted([*TORI, "cloud", "cpu-cluster", "gpu-cluster", "gpu-node"])
 
 
@@ -23,7 +28,7 @@ def test_every_constant_has_a_source(name: str) -> None:
     for key, source in preset.sources.items():
         assert len(source) > 15, key
         if source.startswith("ESTIMATE"):
-            assert source.startswith("ESTIMATE, range "), key
+            assert source.startswith("ESTIMATE: ") and key in {*preset.spans, *CHOICES}, key
         else:
             assert any(char.isdigit() or char == '"' for char in source), key
 
@@ -34,6 +39,35 @@ def test_every_preset_makes_a_machine_and_cites_each_constant(name: str) -> None
     assert made.shape == ((2, 2, 2) if name in TORI else (8, 1, 1))
     assert made.sources.keys() == load_preset(name).constants.flat().keys()
     assert len(made.sources) >= 34
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_constant_lies_in_its_range(name: str) -> None:
+    known = load_preset(name).known
+    assert known.keys() == load_preset(name).constants.flat().keys()
+    for key, of in known.items():
+        high = inf if key.endswith("bandwidth") and of.high == UNLIMITED else of.high
+        value = inf if key.endswith("bandwidth") and of.value == UNLIMITED else of.value
+        assert of.low <= value <= high, key
+        assert of.source == load_preset(name).source(key)
+
+
+def test_ranges_are_numbers_by_the_constant_that_they_are_of() -> None:
+    known = load_preset("t3e").known
+    assert known["send_startup"][:3] == (10_000_000, 5_000_000, 20_000_000)
+    assert known["unpack.object.bandwidth"][:3] == (256_000_000, 150_000_000, 340_000_000)
+    assert known["test.cone"][:3] == (4_000_000, 400_000, 4_000_000)
+    assert known["test.per_triangle"].is_exact and not known["quantum"].is_exact
+    assert load_preset("t3e-shmem").known["pack.rays.bandwidth"].high == UNLIMITED
+
+
+def test_what_is_set_above_a_preset_has_its_own_range_or_none() -> None:
+    constants = structure(Constants, {"send_startup": "5 us", "levels": {"node": {}}}, {})
+    known = layered("gpu-cluster", constants).known
+    assert known["send_startup"] == (5_000_000, 5_000_000, 5_000_000, OVERRIDDEN)
+    assert known["levels.node.latency"][1:3] == (80_000, 700_000)
+    other = structure(Constants, {"levels": {"room": {"size": 4}}}, {})
+    assert not [key for key in layered("gpu-cluster", other).ranges if key.startswith("levels")]
 
 
 def test_t3e_has_the_constants_that_its_file_says() -> None:

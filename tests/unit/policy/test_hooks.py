@@ -24,6 +24,8 @@ from simmpp.policy.view import GROUPS, LOADS, NUMBERS, OBJECT, RANDOM, SELF, WAY
 
 MIN_LOAD = 2
 REST = {"min_load": MIN_LOAD, "in_flight": 1}
+WAY_PS = {"send_ps": 4, "receive_ps": 6, "flight_ps": 5, "fetch_ps": 14, "fetch_flight_ps": 11}
+REST |= WAY_PS | {"test_ps": 3, "finished": 0, "compute_ps": 0, "unasked": 4, "nothing_else": 0}
 NAMES = ("load", "waiting", "known_load")
 SEEN = [
     dict(zip(NAMES, values, strict=True))
@@ -35,19 +37,21 @@ SENDS: dict[str, Answer] = {
     "ray": lambda v: int(v.waiting),
     "concurrent": lambda v: int(v.waiting) * (v.load > MIN_LOAD and v.load > v.known_load),
     "holders": lambda v: int(max(0, v.load - v.known_load - 1) // 2) * (v.load > MIN_LOAD),
+    "cost": lambda v: int(v.waiting) * (25 // v.waiting > 15 // v.waiting),
 }
-ASKS: dict[str, Answer] = dict.fromkeys(("object", "concurrent", "holders"), lambda v: 1)
+ASKS: dict[str, Answer] = dict.fromkeys(("object", "concurrent", "holders", "cost"), lambda v: 1)
 COUNTS = {
     "object": (1, 1),
     "ray": ("batch", 1),
     "concurrent": ("batch", "ask_at_least"),
     "replicated": (1, 1),
     "holders": ("batch", "ask_at_least"),
+    "cost": ("batch", "ask_at_least"),
 }
 
 
 def view(**seen: int) -> View:
-    return cast(View, SimpleNamespace(**seen, **REST))
+    return cast(View, SimpleNamespace(memory=[0] * 8, **seen, **REST))
 
 
 def compiled(hook: Any, names: tuple[str, ...] = (), **shown: Any) -> int:
@@ -70,6 +74,24 @@ def test_hooks_say_what_their_names_promise(name: str) -> None:
             assert function(view(**seen)) == expected, seen
             assert compiled(function, **seen, **REST) == expected, seen
     assert policy.counts == COUNTS[name]
+
+
+def test_costs_are_weighed_with_what_a_ray_has_taken_of_late() -> None:
+    send, ask = POLICIES["cost"].send, POLICIES["cost"].ask
+    assert send is not None and ask is not None
+    seen = REST | {"load": 20, "known_load": 5, "in_flight": 1, "waiting": 4}
+    memory = [0] * 8
+    # 10 ps a ray, then 10 + (26 - 10) / 8; 14 rays more than the other, 6 - 3 ps a ray to fetch.
+    for finished, compute_ps, enough in ((10, 100, 143 // 20), (18, 308, 171 // 24)):
+        seen |= {"finished": finished, "compute_ps": compute_ps}
+        before, shown = memory.copy(), SimpleNamespace(memory=memory, **seen)
+        assert send(cast(View, shown)) == compiled(send, memory=before, **seen) == enough
+    assert memory[:3] == [12, 18, 308]
+    assert send(cast(View, SimpleNamespace(memory=memory, **seen | {"load": 6}))) == 1
+    assert send(cast(View, SimpleNamespace(memory=memory, **seen | {"load": 5}))) == 0
+    for nothing_else, unasked, answer in ((0, 3, 0), (0, 4, 1), (1, 1, 1)):
+        seen |= {"nothing_else": nothing_else, "unasked": unasked}
+        assert ask(cast(View, SimpleNamespace(**seen))) == compiled(ask, **seen) == answer
 
 
 def test_the_view_has_all_numbers_of_a_policy_and_no_field_in_two_groups() -> None:
