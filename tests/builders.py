@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from simmpp.engine.capacity import needs_of
 from simmpp.machine.machine import (
     LEVELS,
     TOPOLOGY_NAMES,
@@ -23,6 +24,7 @@ from simmpp.machine.machine import (
 )
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
+from simmpp.placement.rooms import LEAST, Capacity, Room
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
 
@@ -315,6 +317,27 @@ def random_case(seed: int) -> Case:
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
     machine = on_some_network(machine, seed)
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def with_capacity(case: Case, seed: int, **changes: Any) -> Case:
+    """The case on PEs whose memory ends: at the least, near it, or far beyond."""
+    rng = np.random.default_rng((seed, 17))
+    wishes = (Fraction(0), Fraction(1, 4), Fraction(2, 5), Fraction(1, 3), Room(0), Room(3000))
+    drawn = {
+        "bytes": LEAST,
+        "escape": "fetch",
+        "buffers": _pick(rng, wishes),
+        "fetch": _pick(rng, wishes),
+        "flow": "credits" if rng.random() < 0.9 else "none",
+    }
+    bounds = Capacity(**(drawn | changes))
+    case = with_policy(case, merge_requests=True)
+    case = replace(case, placement=replace(case.placement, capacity=bounds))
+    beyond = int(_pick(rng, (0, 0, 1, 100, 1000, 10_000, 50_000)))
+    if beyond and "bytes" not in changes:
+        least = needs_of(case.workload, case.machine, case.placement, case.policy).least_bytes
+        bounds = replace(bounds, bytes=least + beyond)
+    return replace(case, placement=replace(case.placement, capacity=bounds))
 
 
 def on_torus(case: Case) -> Case:

@@ -37,6 +37,8 @@ class World:
     arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
     heads of messages at links and ports (time, 2, source, send number, 0)."""
     ledger: Ledger = field(default_factory=Ledger)
+    flying: list[Message] = field(default_factory=list)
+    """Messages that have been packed and have not arrived."""
 
     def __post_init__(self) -> None:
         self.nb = self.placement.processors
@@ -91,6 +93,8 @@ class World:
         cost += sum(copy_ps(self.machine.pack[part.kind], part.payload_bytes) for part in parts)
         clock = self.pay("communication", pe, clock, cost)
         message = Message(pe.number, destination, pe.sends, tuple(parts), pe.load, clock)
+        message.credit, pe.owed[destination] = pe.owed[destination], 0
+        self.flying.append(message)
         pe.sends += 1
         pe.last_departure[destination] = clock
         if message.count(OBJECT) or message.count(RAYS):
@@ -139,7 +143,7 @@ class World:
 
     def pinned(self, pe: PE) -> set[int]:
         """Fetched objects that are there for a test that is to be made."""
-        return {self.next_object(ray) for ray in pe.granted}
+        return {self.next_object(ray) for ray in pe.granted if ray != pe.stuck}
 
     def next_object(self, ray: int) -> int:
         """What a ray is to be tested against next."""
