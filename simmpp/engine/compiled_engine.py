@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
 from simmpp.engine.event_heap import HEAD, INSTANT, PE_BITS, pop, push, replace_first
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
+from simmpp.engine.pe.rooms import note_arrival_of
 from simmpp.engine.pe.step import SLEEP, step
 from simmpp.engine.record.log import note_arrival
-from simmpp.engine.state import State, room_lacking, starved
+from simmpp.engine.state import State, room_lacking
 
 EVENTS_PER_CALL = 1 << 20
 """So that progress is shown and Ctrl-C is heard."""
@@ -49,11 +49,11 @@ class CompiledRun:
             if self._progress is not None:
                 self._progress(self.state["rays_left"])
         if status == STARVED:
-            raise ModelError(starved(self.state))
+            self.state.starve()
 
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
-        records = ("logs", "record_tests", "record_counters")
+        records = ("logs", "record_tests", "record_counters", "measures")
         if any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
@@ -105,6 +105,8 @@ def _arrive(s: Run, message: int, now_ps: int) -> None:
     s.arrivals += 1
     if s.logs:
         note_arrival(s, message)
+    if s.measures:
+        note_arrival_of(s, message)
     if process.asleep:
         process.asleep = 0
         _schedule_instant(s, me, now_ps)

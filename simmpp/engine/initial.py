@@ -29,6 +29,7 @@ from simmpp.engine.residency import (
     resident_bytes,
     row_bytes,
 )
+from simmpp.engine.room_arrays import room_arrays
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
@@ -64,6 +65,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays |= room_arrays(workload, machine, placement, parameters)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
     arrays["policy_views"] = views = _policy_views(workload, placement, parameters)
@@ -99,7 +101,7 @@ def _sizes(
 ) -> Sizes:
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
-    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
+    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
     each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
     return Sizes(
         nb=nb,
@@ -111,6 +113,7 @@ def _sizes(
         tested=workload.n_tests if recording.tests else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
+        bounded=placement.capacity is not None and placement.capacity.has_credits,
     )
 
 
@@ -168,10 +171,14 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 
 
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
+    bounds = placement.capacity
     return {
         "processors": machine.processors,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "measures": bounds is not None,
+        "bounded": bounds is not None and bounds.has_credits,
+        "escapes": bounds is not None and bounds.has_escape,
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,

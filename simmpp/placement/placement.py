@@ -68,6 +68,8 @@ _CELLS_SCHEMA = {
     "additionalProperties": False,
 }
 _PIXELS_SCHEMA = {"anyOf": [{"enum": list(get_args(Pixels))}, _CELLS_SCHEMA]}
+
+
 def _pixels(value: object) -> object:
     """One of the words, or ``{cells: 8}``."""
     if isinstance(value, dict) and set(value) == {"cells"}:
@@ -78,6 +80,7 @@ def _pixels(value: object) -> object:
 
 
 PixelRule = Annotated[Pixels | Cells, parsed_by(_pixels), Expect(_PIXELS, _PIXELS_SCHEMA)]
+
 
 @declared
 class Memory:

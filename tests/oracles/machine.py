@@ -72,7 +72,7 @@ class Simulation(Dispatch):
             self.ledger.open[pe.number] = (time, f"receive {MESSAGE_KINDS[message.kind]}", 0)
         elif self.can_unpack(pe):
             work_end = self.unpack(time, pe)
-            self.ledger.open[pe.number] = (time, "unpack", 0)
+            self.ledger.open[pe.number] = (time, "receive rays", 0)
         elif self.has_ready(pe):
             tests_before = len(self.ledger.tested)
             work_end = self.compute(time, pe)

@@ -10,7 +10,17 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import give_back, sort_by_key, take
-from simmpp.engine.arrays.records import NONE, PACK, REQUESTS_TOGETHER, SINGLY, Row, Run
+from simmpp.engine.arrays.records import (
+    FOR_CREDIT,
+    FOR_ESCAPE,
+    NONE,
+    ORDINARY,
+    PACK,
+    REQUESTS_TOGETHER,
+    SINGLY,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import (
     copy_costs,
     made_up,
@@ -21,12 +31,14 @@ from simmpp.engine.arrays.views import (
     parts_by_kind,
     peer_rows,
     pes,
+    rooms,
     sent_by_kind,
     sort_items,
     sort_keys,
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.credits import take_owed
 from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
@@ -53,6 +65,23 @@ def send_request(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
 
 
 @kernel
+def send_escape(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
+    """Ask the owner for an object that comes into the escape room."""
+    row = _new_part(s, REQUEST, other, s.request_bytes)
+    messages(s)[row].obj, messages(s)[row].purpose = obj, FOR_ESCAPE
+    return _post(s, me, row, now_ps)
+
+
+@kernel
+def send_credit(s: Run, me: int, other: int, now_ps: int) -> int:
+    """Tell another PE how much of its share is free, which is in every header, too."""
+    row = _new_part(s, LOAD, other, 0)
+    messages(s)[row].purpose = FOR_CREDIT
+    rooms(s)[me].credit_messages += 1
+    return _send(s, me, row, now_ps)
+
+
+@kernel
 def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
     row = _new_part(s, RAYS, other, n * s.ray_bytes)
@@ -75,7 +104,7 @@ def answer(s: Run, me: int, message: int, now_ps: int) -> int:
         m = messages(s)[part]
         if m.kind == REQUEST:
             row = _new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
-            messages(s)[row].obj = m.obj
+            messages(s)[row].obj, messages(s)[row].purpose = m.obj, m.purpose
             if answering == NONE:
                 answering = row
             else:
@@ -104,6 +133,7 @@ def _new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
     m.kind, m.destination = kind, destination
     m.payload_bytes = m.part_bytes = payload_bytes
     m.obj, m.n = NONE, 0
+    m.credit, m.purpose = 0, ORDINARY
     m.part, m.last_part = NONE, row
     m.depart_ps = NONE  # a later part never departs by itself
     return row
@@ -165,6 +195,8 @@ def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     m.source, m.load, m.number = me, pe.load, pe.messages_sent
     m.depart_ps = now_ps + s.send_startup_ps + parts_ps(s, row, PACK)
     depart(s, m)
+    if s.bounded:
+        m.credit = take_owed(s, me, m.destination)
     pe.messages_sent += 1
     sent_by_kind(s)[m.kind] += 1
     s.bytes_sent += m.payload_bytes + s.header_bytes

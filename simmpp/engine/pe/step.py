@@ -10,7 +10,16 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, SAMPLED, UNPACK, Row, Run
+from simmpp.engine.arrays.records import (
+    BEGIN,
+    DISPATCH,
+    FOR_ESCAPE,
+    NONE,
+    SAMPLED,
+    UNPACK,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
@@ -19,16 +28,20 @@ from simmpp.engine.arrays.views import (
     peer_rows,
     pes,
     rays,
+    rooms,
     test_ps,
     tested_objects,
     tested_rays,
     topology,
 )
+from simmpp.engine.pe.admission import can_unpack, unpack, unpacking_ps
 from simmpp.engine.pe.dispatch import dispatch
+from simmpp.engine.pe.escape import ESCAPED, admit_escape
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
 from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
-from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
+from simmpp.engine.pe.ready import cross, finish_ray, make_ready, next_ready, pop_ready
+from simmpp.engine.pe.rooms import has_ready, note_memory, note_receipt
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
@@ -58,6 +71,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
         next_ps = _begin(s, me, message, now_ps)
+    if s.measures:
+        note_memory(s, me)
     pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
@@ -70,17 +85,33 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     pe = pes(s)[me]
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
-    if message == NONE and pe.n_ready == 0:
+    unpacks = message == NONE and s.bounded and can_unpack(s, me)
+    if message == NONE and not unpacks and not has_ready(s, me):
         return SLEEP
     s.activities += 1
+    if s.bounded:
+        _require_progress(s)
     s.phase = DISPATCH
     if message != NONE:
         s.consumed = 1
         next_ps = receive(s, me, message, now_ps)
+    elif unpacks:
+        next_ps = unpack(s, me, now_ps)
     else:
         next_ps = compute(s, me, now_ps)
     note_peaks(s, pe)
     return next_ps
+
+
+@kernel
+def _require_progress(s: Run) -> None:
+    """No more than so many activities lie between two tests or finished rays (``pe.escape``).
+
+    Most seen in random cases on 8 PEs: 1,460.
+    """
+    nb = s.processors
+    if s.activities - s.progress_at > 10 * nb**3 + 200 + 10 * nb * s.rays_left:
+        raise RuntimeError("no progress")
 
 
 @kernel
@@ -94,11 +125,19 @@ def note_peaks(s: Run, pe: Row) -> None:
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack one message and do what it asks for; returns the end of that work."""
     pe, m = pes(s)[me], messages(s)[message]
-    clock_ps = now_ps + s.receive_startup_ps + parts_ps(s, message, UNPACK)
+    links = hops(topology(s), m.source, me) if s.record_hops else 0
+    if links > 0 and m.kind == RAYS:
+        cross(s, m.first, m.n, links)
+    if s.measures:
+        note_receipt(s, me, message)
+    clock_ps = now_ps + s.receive_startup_ps
+    if s.bounded:
+        clock_ps += unpacking_ps(s, me, message)
+    else:
+        clock_ps += parts_ps(s, message, UNPACK)
     # Heard before an answer is packed, and whatever the message is.
     _hear(s, me, m.source, m.load, m.kind, clock_ps)
     pe.received_load = 1 if m.kind == LOAD else 0
-    links = hops(topology(s), m.source, me) if s.record_hops else 0
     part = message
     while part != NONE:
         _take_in(s, me, messages(s)[part], links)
@@ -114,31 +153,26 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
-    forget(s, message)
+    if s.bounded and m.kind == RAYS and m.first != NONE:  # what did not fit stays
+        forget(s, m.part)
+        m.part = NONE
+    else:
+        forget(s, message)
     return clock_ps
 
 
 @kernel
 def _take_in(s: Run, me: int, m: Row, links: int) -> None:
     """The part of a message that rays or an object are, which came over that many links."""
-    if m.kind == OBJECT:
+    if m.kind == OBJECT and m.purpose == FOR_ESCAPE:
+        admit_escape(s, me, 2 * links)
+    elif m.kind == OBJECT:
         admit_object(s, me, m.obj, 2 * links)
-    elif m.kind == RAYS:
+    elif m.kind == RAYS and not s.bounded:
         pe = pes(s)[me]
         pe.load += m.n
         pe.peak_rays = max(pe.peak_rays, pe.load)
-        if links > 0:
-            _cross(s, m.first, m.n, links)
         make_ready(s, me, m.first, m.last, m.n)
-
-
-@kernel
-def _cross(s: Run, first: int, n: int, links: int) -> None:
-    """Links were crossed by n linked rays."""
-    ray = first
-    for _ in range(n):
-        rays(s)[ray].hops += links
-        ray = rays(s)[ray].next
 
 
 @kernel
@@ -161,7 +195,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     clock_ps = start_ps
     pe.received_load = 0
     tests, done = 0, s.rays_done
-    while tests < s.quantum and pe.n_ready > 0:
+    while tests < s.quantum and has_ready(s, me):
         ray = next_ready(s, me)
         first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
         while first + rays(s)[ray].tested < end:
@@ -183,6 +217,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             clock_ps += s.ray_ps
             pop_ready(s, me)
             finish_ray(s, me, ray, clock_ps)
+    if tests > 0 or s.rays_done > done:
+        s.progress_at = s.activities
     if s.logs:
         note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
     if s.record_counters:
@@ -206,6 +242,8 @@ def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
         miss_row = find(misses(s), me * s.n_objects + obj)
         if miss_row != NONE:  # a resident object has none
             touch(s, me, miss_row)
-            if r.granted:
+            if r.granted == 1:
                 unpin(s, me, miss_row, obj, now_ps)
+        if r.granted == ESCAPED:
+            rooms(s)[me].stuck = NONE
         r.granted = 0
