@@ -257,9 +257,22 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
             bytes_per_s=int(_pick(rng, rates)),
             gap_ps=int(_pick(rng, times)),
             ports=int(rng.integers(1, 4)) if n > 0 else 1,
+            send_startup_ps=int(_pick(rng, times)),
+            receive_startup_ps=int(_pick(rng, times)),
         )
         for n in (*inside, len(inside))
     )
+
+
+def with_costs_of_today(machine: Machine, seed: int) -> Machine:
+    """The machine, in some cases with parts that have a tree of their own.
+
+    Draws from a stream of its own, too.
+    """
+    rng = np.random.default_rng((seed, 19))
+    if rng.random() < 0.3:
+        machine = replace(machine, test=replace(machine.test, log2_ps=machine.latency_ps))
+    return machine
 
 
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:
@@ -315,7 +328,7 @@ def random_case(seed: int) -> Case:
     placement = random_placement(rng, workload, machine.processors)
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
-    machine = on_some_network(machine, seed)
+    machine = with_costs_of_today(on_some_network(machine, seed), seed)
     return Case(workload, machine, placement, random_policy(rng), order)
 
 

@@ -29,6 +29,8 @@ TIME = {"anyOf": [_text(_SECONDS), {"const": 0}]}
 """JSON schemas of what users write."""
 SIZE = {"anyOf": [_text(_BYTES), {"const": 0}]}
 BANDWIDTH = {"anyOf": [_text(f"{_BYTES_OR_BITS}/{_SECONDS}"), {"const": "unlimited"}]}
+POWER = {"anyOf": [_text("[mkM]?W"), {"const": 0}]}
+PRICE = _text(r"/\s*h")
 SHARE_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})?")
 SHARE_OF_TEXT = _text(r"(?:%|/\s*[0-9]{1,18})")
 """A share that can't be taken for a number."""
@@ -75,4 +77,22 @@ Size = Annotated[int, *_marks(units.byte_count, _up_to(units.MOST_BYTES), _A_SIZ
 Bandwidth = Annotated[
     int, *_marks(units.bytes_per_second, _up_to(units.MOST_BYTES_PER_S), _A_BANDWIDTH)
 ]
+_A_POWER = Expect(
+    units.A_POWER,
+    POWER,
+    "mW, W, kW or MW",
+    f"0 to {units.write_mw(units.MOST_MW)}",
+    units.write_mw,
+    "an integer of milliwatts",
+)
+_A_PRICE = Expect(
+    units.A_PRICE,
+    PRICE,
+    "1/h",
+    f"0/h to {units.write_price(units.MOST_PRICE_MICROS)}",
+    units.write_price,
+    "an integer of millionths",
+)
+Power = Annotated[int, *_marks(units.milliwatts, _up_to(units.MOST_MW), _A_POWER)]
+Price = Annotated[int, *_marks(units.price_micros, _up_to(units.MOST_PRICE_MICROS), _A_PRICE)]
 Share = Annotated[Fraction, *_marks(units.share, None, Expect(units.A_SHARE, SHARE))]

@@ -23,17 +23,23 @@ UNLIMITED = 0
 LONGEST_PS = 10 * 10**12
 """Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
 MOST_BYTES = 10**17
+MOST_MW = 10**12
+"""A gigawatt."""
+MOST_PRICE_MICROS = 10**15
 LEAST_BYTES_PER_S, MOST_BYTES_PER_S = 1000, 9 * 10**15
 
 A_TIME = "a time such as '12 us'"
 A_SIZE = "a size such as '64 MB'"
 A_BANDWIDTH = "a bandwidth such as '340 MB/s' or '10 Gbit/s', or 'unlimited'"
+A_POWER = "a power such as '630 W'"
+A_PRICE = "a price of an hour such as '4.92/h'"
 A_SHARE = "a share from 0 to 1, such as 0.1, 10% or 1/64"
 
 _DEFINITIONS = [
     "second = [time] = s",
     "minute = 60 * second = min",
     "byte = [information] = B",
+    "watt = [power] = W",
     "bit = [bits] = b",  # no part of a byte: '64 Mb' of memory would be a mistake for MB
     "pico- = 1e-12 = p-",
     "nano- = 1e-9 = n-",
@@ -52,6 +58,7 @@ _DEFINITIONS = [
 # Neither signs, operators nor long exponents: pint would evaluate them, Fraction expand them.
 NUMBER = r"[0-9]{1,30}(?:\.[0-9]{0,30})?(?:[eE][+-]?[0-9]{1,2})?"
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*([A-Za-zµμ]{{1,16}}(?:/[A-Za-z]{{1,16}})?)\s*")
+_PRICE = re.compile(rf"\s*({NUMBER})\s*/\s*h\s*")
 _SHARE = re.compile(rf"\s*({NUMBER})\s*(?:(%)|/\s*([0-9]{{1,18}}))?\s*")
 
 
@@ -139,6 +146,26 @@ def bytes_per_second(value: object) -> int:
     return rate
 
 
+def milliwatts(value: object) -> int:
+    """``"630 W"`` -> 630000; 0 needs no unit.
+
+    Raises ConfigError for anything else but a power.
+    """
+    return half_up(1000 * _quantity(value, "watt", A_POWER, MOST_MW // 1000, format_watts))
+
+
+def price_micros(value: object) -> int:
+    """``"4.92/h"`` -> 4920000 millionths of a currency, whichever it is.
+
+    Raises ConfigError for anything else.
+    """
+    match = _PRICE.fullmatch(value) if isinstance(value, str) else None
+    price = half_up(10**6 * Fraction(match[1])) if match else -1
+    if not 0 <= price <= MOST_PRICE_MICROS:
+        raise ConfigError(f"value {shown(value)}: expected {A_PRICE}")
+    return price
+
+
 def share(value: object) -> Fraction:
     """``"12%"``, ``0.12`` or ``"3/25"`` -> Fraction(3, 25), exactly.
 
@@ -169,7 +196,8 @@ def shown(value: object) -> str:
 
 TIMES = (("s", 10**12), ("ms", 10**9), ("us", 10**6), ("ns", 1000), ("ps", 1))
 SIZES = (("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 1000), ("B", 1))
-"""Units of what is counted in ps and in bytes, the largest first."""
+POWERS = (("MW", 10**9), ("kW", 10**6), ("W", 1000), ("mW", 1))
+"""Units of what is counted in ps, bytes and mW, the largest first."""
 
 
 def _with_prefix(number: int, units: Sequence[tuple[str, int]]) -> str:
@@ -195,6 +223,21 @@ def write_bytes(size_bytes: int) -> str:
 def write_bytes_per_s(rate: int) -> str:
     """340000000 -> ``"340 MB/s"``; UNLIMITED -> ``"unlimited"``."""
     return "unlimited" if rate == UNLIMITED else write_bytes(rate) + "/s"
+
+
+def write_mw(power_mw: int) -> str:
+    """1275000 -> ``"1.275 kW"``."""
+    return _exactly(power_mw, POWERS)
+
+
+def write_price(micros: int) -> str:
+    """4920000 -> ``"4.92/h"``."""
+    return f"{(Decimal(micros) / 10**6).normalize():f}/h"
+
+
+def format_watts(power_w: int) -> str:
+    """1000 -> ``"1 kW"``."""
+    return write_mw(1000 * power_w)
 
 
 def format_ps(time_ps: int) -> str:

@@ -41,7 +41,9 @@ _LEVELS = "the blocks from the inside out by a name for each, such as node, grou
 
 def key_of(field: str) -> str:
     """``send_startup_ps`` -> ``send_startup``: users write the unit with the value."""
-    return field.removesuffix("_ps").replace("bytes_per_s", "bandwidth")
+    for unit in ("_ps", "_mw", "_micros"):
+        field = field.removesuffix(unit)
+    return field.replace("bytes_per_s", "bandwidth")
 
 
 def long_test(value: object) -> object:
@@ -52,7 +54,8 @@ def long_test(value: object) -> object:
         picoseconds(value)
     except ConfigError as error:
         raise ConfigError(f"{error.problem}, or a mapping by kind of primitive") from None
-    return dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value) | {"per_triangle": 0}
+    alike = dict.fromkeys(("sphere", "cone", "polygon", "mesh"), value)
+    return alike | {"per_triangle": 0, "log2": 0}
 
 
 def named_levels(value: object) -> object:

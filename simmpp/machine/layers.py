@@ -19,6 +19,8 @@ _BELONGS = {
     "fat_tree": (FAT_TREE,),
 }
 """Keys that mean something with these topologies only."""
+_TRIANGLES = ("test.log2", "test.per_triangle")
+"""Costs of triangles, of which one is 0."""
 
 
 @dataclass
@@ -54,13 +56,20 @@ class Layers:
                 del self.numbers[key], self.sources[key]
                 self.ranges.pop(key, None)
         given = constants.flat()
+        cited = {key: source_of(key) for key in given}
+        for key, other in (_TRIANGLES, _TRIANGLES[::-1]):
+            if given.get(key) and not given.get(other):
+                given[other], cited[other] = 0, cited[key]
         self.numbers |= given
-        self.sources |= {key: source_of(key) for key in given}
+        self.sources |= cited
         of_others = {key: ends for key, ends in self.ranges.items() if key not in given}
         self.ranges = of_others | dict(ranges)
 
     def refuse_strangers(self, constants: Constants) -> None:
         """Raise ConfigError, with the key, for what a layer sets in vain."""
+        if all(constants.flat().get(key) for key in _TRIANGLES):
+            problem = f"it replaces {_TRIANGLES[1]}: expected one of them"
+            raise ConfigError(problem, where=_TRIANGLES[0])
         topology = self.words["topology"]
         for key, topologies in _BELONGS.items():
             if getattr(constants, key) is not None and topology not in topologies:
@@ -76,6 +85,8 @@ class Layers:
                 self.numbers["link_bandwidth"], self.numbers["injection_bandwidth"]
             ),
             "gap": self.numbers["port_gap"],
+            "send_startup": self.numbers["send_startup"],
+            "receive_startup": self.numbers["receive_startup"],
         }
         return tuple(self._level(name, of_machine) for name in self.level_names)
 
@@ -90,6 +101,8 @@ class Layers:
             bytes_per_s=said["bandwidth"],
             gap_ps=said["gap"],
             ports=said.get("ports", 1),
+            send_startup_ps=said["send_startup"],
+            receive_startup_ps=said["receive_startup"],
         )
 
 

@@ -31,8 +31,8 @@ from simmpp.machine.machine import Level, Machine
 from simmpp.machine.transfer import transfer_ps
 
 # What compiled code knows of each level, one after the other, behind the number of the topology.
-_EACH = 7
-_BLOCK, _INNER, _LATENCY, _RATE, _GAP, _PORTS, _ROW = range(1, 1 + _EACH)
+_EACH = 9
+_BLOCK, _INNER, _LATENCY, _RATE, _GAP, _PORTS, _ROW, _SEND, _RECEIVE = range(1, 1 + _EACH)
 _OUT, _IN = 0, 1
 
 
@@ -109,7 +109,7 @@ class Blocks:
             number
             for block, inner, level, row in each
             for number in (block, inner, level.latency_ps, level.bytes_per_s, level.gap_ps,
-                           level.ports, row)
+                           level.ports, row, level.send_startup_ps, level.receive_startup_ps)
         ]  # fmt: skip
 
     def by_link(self, of_rows: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -164,6 +164,18 @@ def latency_ps(network: Network, source: int, destination: int) -> int:
 def bytes_per_s(network: Network, source: int, destination: int) -> int:
     """Bandwidth between two PEs."""
     return network[level_of(network, source, destination) * _EACH + _RATE]
+
+
+@kernel
+def send_startup_ps(network: Network, source: int, destination: int) -> int:
+    """What any message between two PEs costs its sender."""
+    return network[level_of(network, source, destination) * _EACH + _SEND]
+
+
+@kernel
+def receive_startup_ps(network: Network, source: int, destination: int) -> int:
+    """What it costs its receiver."""
+    return network[level_of(network, source, destination) * _EACH + _RECEIVE]
 
 
 @kernel

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.documented import documented
-from simmpp.common.quantities import Bandwidth, Size, Time
+from simmpp.common.quantities import Bandwidth, Power, Price, Size, Time
 from simmpp.common.strict import Expect, integer, one_of, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
@@ -63,6 +63,10 @@ class Level:
     ports: Annotated[int, *integer(1, MOST_PROCESSORS, "ports")] = 1
     """With contention: ways out, and in, of each block of the level below; its PE i has number i
     mod ports. A PE has one."""
+    send_startup_ps: Time = 0
+    """Sender's cost of such a message, the machine's when not given."""
+    receive_startup_ps: Time = 0
+    """Receiver's cost of such a message, the machine's when not given."""
 
 
 @documented
@@ -112,6 +116,9 @@ class TestCost:
     """A test against a mesh part's first triangle."""
     per_triangle_ps: Time = 0
     """For every triangle of a polygon or mesh beyond its first."""
+    log2_ps: Time = 0
+    """In place of `per_triangle`, for parts with a tree of their own: for every level of a tree of
+    the triangles, log2 of their number rounded up."""
 
     def of_objects(self, workload: Workload, dtype: type = np.int64) -> NDArray[Any]:
         """Cost of a test against each object, its own where the workload gives one: (N,) ps."""
@@ -120,8 +127,16 @@ class TestCost:
         by_kind: NDArray[Any] = np.zeros(4, dtype)
         costs_ps = (self.sphere_ps, self.cone_ps, self.polygon_ps, self.mesh_ps)
         by_kind[[SPHERE, CONE, POLYGON, MESH]] = costs_ps
+        cost_ps = by_kind[workload.object_kinds]
+        if self.log2_ps:
+            return cost_ps + self.log2_ps * depths(workload.object_triangles).astype(dtype)
         beyond_first = np.maximum(workload.object_triangles.astype(dtype) - 1, 0)
-        return by_kind[workload.object_kinds] + self.per_triangle_ps * beyond_first
+        return cost_ps + self.per_triangle_ps * beyond_first
+
+
+def depths(triangles: NDArray[np.signedinteger[Any]]) -> NDArray[np.intp]:
+    """log2 of numbers of triangles, rounded up: the least k with 2^k >= the number."""
+    return np.searchsorted(1 << np.arange(63), triangles)
 
 
 @documented
@@ -178,13 +193,20 @@ class Machine:
     """With contention: a message keeps the ports of its PEs busy for that long at least."""
     contention: Literal["none", "links"] = "none"
     """What messages wait for: nothing, or links and ports that serve one at a time."""
+    power_mw: Power = field(default=0, compare=False)
+    """Electricity that a PE takes with its share of its node, for what runs cost; not known when
+    not given."""
+    price_micros: Price = field(default=0, compare=False)
+    """Of an hour of a PE likewise, in the one currency of all machines (the package's in USD)."""
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     """Where each constant comes from, by its dotted key; values without a document say ESTIMATE."""
 
     @property
     def per_message_ps(self) -> int:
         """No message costs a PE more than this and its copy: ``limits`` counts on it."""
-        return self.send_startup_ps + self.receive_startup_ps + self.probe_ps
+        of_levels = (level.send_startup_ps + level.receive_startup_ps for level in self.levels)
+        startups_ps = max(self.send_startup_ps + self.receive_startup_ps, *of_levels, 0)
+        return startups_ps + self.probe_ps
 
     @property
     def processors(self) -> int:

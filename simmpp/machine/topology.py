@@ -118,6 +118,22 @@ def bytes_per_s(network: Network, source: int, destination: int) -> int:
 
 
 @kernel
+def send_startup_ps(network: Network, source: int, destination: int, else_ps: int) -> int:
+    """What any message costs its sender: levels have their own, others ``else_ps``."""
+    if network[0] == _LEVELS:
+        return levels.send_startup_ps(network, source, destination)
+    return else_ps
+
+
+@kernel
+def receive_startup_ps(network: Network, source: int, destination: int, else_ps: int) -> int:
+    """Likewise its receiver."""
+    if network[0] == _LEVELS:
+        return levels.receive_startup_ps(network, source, destination)
+    return else_ps
+
+
+@kernel
 def port(network: Network, pe: int, out: int) -> int:
     """Row of the port through which messages enter the network from a PE (0) or leave it (1)."""
     return torus.port(pe, out) if network[0] == _TORUS else 2 * pe + out

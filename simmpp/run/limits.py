@@ -4,7 +4,7 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 
 - *compute*: tests and rays. That is the bound, which no way of sending messages changes.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
-  unpacking included.
+  unpacking included; between levels those of the outermost.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
@@ -52,7 +52,7 @@ class MessageCosts:
     """What limits need of a machine."""
 
     startups_ps: int
-    """Of both PEs, for any message."""
+    """Of both PEs, for any message; of levels those of the outermost."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
@@ -63,13 +63,16 @@ class MessageCosts:
     @classmethod
     def of(cls, constants: Mapping[str, Any]) -> MessageCosts:
         """From a machine's fields, as ``run.json`` has them; KeyError where these were others."""
+        startups = ("send_startup_ps", "receive_startup_ps")
+        startups_ps = sum(constants[name] for name in startups)
         rates = [constants["link_bytes_per_s"], constants["injection_bytes_per_s"]]
         flight_ps = constants["latency_ps"] + constants["hop_latency_ps"]
         if levels := constants.get("levels"):
             rates, flight_ps = [levels[-1]["bytes_per_s"]], levels[-1]["latency_ps"]
+            startups_ps = sum(levels[-1].get(name, constants[name]) for name in startups)
         copies = zip(constants["pack"], constants["unpack"], strict=True)
         return cls(
-            constants["send_startup_ps"] + constants["receive_startup_ps"],
+            startups_ps,
             tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies),
             flight_ps,
             min(filter(None, rates), default=0),

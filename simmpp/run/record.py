@@ -19,6 +19,7 @@ from simmpp.config.config import Config, described
 from simmpp.machine.machine import Machine
 from simmpp.methods.simulation import integers
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.run.machines import MACHINE_OF, machines_told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.run.provenance import all_versions
@@ -40,12 +41,18 @@ def record(
     machines: Iterable[Machine],
     points: int,
     further: Mapping[str, Any],
+    cells: Iterable[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
     """The content of a ``run.json``; nothing in it depends on when, where or how fast it ran.
 
     ``workloads`` are the digests of each scene's, by its name; equal machines are there once.
+    ``cells`` are what rows of each of the machines have in the columns of swept keys.
     """
-    constants = {json.dumps(values): values for values in map(asdict, machines)}
+    all_constants = [*map(asdict, machines)]
+    constants = {json.dumps(values): values for values in all_constants}
+    numbers = {text: number for number, text in enumerate(constants)}
+    told = [numbers[json.dumps(values)] for values in all_constants]
+    which = machines_told(list(constants.values()), zip(cells, told, strict=False))
     return {
         "versions": all_versions(),
         "config": recorded(config),
@@ -53,6 +60,7 @@ def record(
         "points": points,
         **further,
         "machines": list(constants.values()),
+        **({MACHINE_OF: which} if which else {}),
     }
 
 

@@ -100,8 +100,9 @@ class Plan:
 
     def record(self, outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
         """The content of ``run.json``: what it is of, and how far it is."""
-        configs = (planned.point.config for planned in self.points)
-        machines = (config.machine_for(config.processors) for config in configs)
+        configs = {id(p.point.comparison): p.point.comparison for p in self.points}.values()
+        machines = [of.config.machine_for(of.config.processors) for of in configs]
+        cells = [{"processors": of.config.processors, **of.swept} for of in configs]
         keys = {planned.task.key for planned in self.points}
         failures = [bool(outcomes[key].error) for key in keys if key in outcomes]
         further = {
@@ -110,7 +111,7 @@ class Plan:
             FAILED: failures.count(True),
             "further_columns": list(self.further),
         }
-        return record(self.config, self.workloads, machines, len(self.points), further)
+        return record(self.config, self.workloads, machines, len(self.points), further, cells)
 
     def rows(self, outcomes: Mapping[str, Outcome]) -> list[Row]:
         """Rows of the points that are finished, sorted by their keys."""

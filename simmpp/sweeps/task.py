@@ -17,6 +17,9 @@ from simmpp.policy.reads import knows_loads, numbers_read, reads
 from simmpp.policy.view import NUMBERS
 from simmpp.sweeps.grid import GridPoint
 
+TELL_NOTHING = ("name", "sources", "power_mw", "price_micros")
+"""Fields of machines that decide no simulation."""
+
 
 @dataclass(frozen=True, eq=False)
 class Task:
@@ -68,7 +71,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
 def constants_of(config: Config) -> dict[str, Any]:
     """All of a point's machine that decides a simulation."""
     constants = asdict(replace(config.machine_for(config.processors), sources={}))
-    return {name: value for name, value in constants.items() if name not in ("name", "sources")}
+    return {name: value for name, value in constants.items() if name not in TELL_NOTHING}
 
 
 def canonical(policy: PolicyParameters) -> PolicyParameters:

@@ -79,7 +79,7 @@ def test_runs_and_sweeps_have_that_machine() -> None:
     assert machine["name"] == "ours" and machine["send_startup_ps"] == 200_000
     assert [level["latency_ps"] for level in machine["levels"]] == [500_000, 2_000_000]
     assert machine["sources"]["receive_startup"] == "our log book, 2026"
-    Path("theirs.yaml").write_text(OURS.replace("1.5 us", "15 us"))
+    Path("theirs.yaml").write_text(OURS.replace("1.5 us", "15 us") + "  price: 3.5/h\n")
     text = CONFIG.replace("levels: {system: {latency: 2 us}}", "latency: 1 us")
     Path("s.yaml").write_text(text[:-1] + ", sweep: {machine.file: [ours.yaml, theirs.yaml]}}")
     done = simmpp("sweep", "s.yaml", "--out", "s", "--workers", "1")
@@ -88,6 +88,10 @@ def test_runs_and_sweeps_have_that_machine() -> None:
     assert {row["machine.file"] for row in rows} == {"ours.yaml", "theirs.yaml"}
     asked = {row["makespan_ps"] for row in rows if row["policy"] == "object"}
     assert len(asked) == 2
+    assert "Of 2 machines ours.yaml finishes first: " in done.stdout
+    record = json.loads(Path("s/run.json").read_text())
+    assert [of["price_micros"] for of in record["machines"]] == [0, 3_500_000]
+    assert [of["at"]["machine.file"] for of in record["machine_of"]] == ["ours.yaml", "theirs.yaml"]
 
 
 MISTAKES = [

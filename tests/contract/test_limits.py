@@ -75,7 +75,9 @@ def test_a_full_clock_is_an_error_and_never_wraps(engine: str) -> None:
     tree = replace(waiting, topology=FAT_TREE, fat_tree=FatTree(2))
     levels = (Level("near", 2), Level("far", latency_ps=CLOCK_LIMIT_PS))
     in_blocks = replace(on_torus(case).machine, topology=LEVELS, levels=levels)
-    for machine in (computing, waiting, tree, in_blocks):
+    dear = (Level("near", 2), Level("far", send_startup_ps=CLOCK_LIMIT_PS // 2))
+    of_levels = replace(in_blocks, levels=dear)
+    for machine in (computing, waiting, tree, in_blocks, of_levels):
         with pytest.raises(ConfigError, match="exceeds the clock"):
             simmpp.simulate(case.workload, machine, *run_case[2:], engine=engine)
 

@@ -43,6 +43,9 @@ def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:
         POLYGON: test.polygon_ps,
         MESH: test.mesh_ps,
     }[kind]
+    if test.log2_ps:
+        depth = next(k for k in range(64) if 2**k >= triangles)
+        return base + test.log2_ps * depth
     return base + test.per_triangle_ps * max(triangles - 1, 0)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from oracles.costs import intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
-from oracles.network import distance
+from oracles.network import distance, startups_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -87,7 +87,7 @@ class Simulation(Dispatch):
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
-        cost = self.machine.receive_startup_ps
+        _, cost = startups_ps(self.machine, message.source, pe.number)
         cost += self.unpacking_ps(pe, message)
         clock = self.pay("communication", pe, time, cost)
         self.ledger.received += 1

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from oracles import blocks, tree
 from oracles.costs import Stage, hops_from, slowest, transfer_ps
 from oracles.state import Message
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import Level, Machine
 
 Way = list[tuple[str, ...]]
 
@@ -56,6 +56,14 @@ def distance(machine: Machine, source: int, destination: int) -> int:
         return hops_from(machine.shape, source)[destination]
     of = {"levels": blocks.distance, "fat-tree": tree.distance}[machine.topology]
     return of(machine, source, destination)
+
+
+def startups_ps(machine: Machine, source: int, destination: int) -> tuple[int, int]:
+    """What a message costs its sender and its receiver, whatever its size."""
+    of: Machine | Level = machine
+    if machine.topology == "levels":
+        of = blocks.level_between(machine, source, destination)
+    return of.send_startup_ps, of.receive_startup_ps
 
 
 def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 
 from oracles.costs import copy_ps, intersection_ps
 from oracles.memory import Bounded
-from oracles.network import distance, network_ps
+from oracles.network import distance, network_ps, startups_ps
 from oracles.state import PE
 from simmpp.common.randomness import key
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
@@ -77,8 +77,9 @@ class Views(Bounded):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[RAYS], n_bytes)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[RAYS], n_bytes)
+        sending, receipt = startups_ps(machine, pe.number, other)
+        view.send_ps = sending + copy_ps(machine.pack[RAYS], n_bytes)
+        view.receive_ps = receipt + copy_ps(machine.unpack[RAYS], n_bytes)
         view.flight_ps = network_ps(machine, pe.number, other, n_bytes)
         return view  # type: ignore[return-value]
 
@@ -108,13 +109,14 @@ class Views(Bounded):
         """Of a request, of the object, and of all that is in between."""
         owner, machine = self.owners[obj], self.machine
         asked, fetched = machine.request_bytes, self.object_bytes[obj]
-        ask_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], asked)
-        receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[OBJECT], fetched)
+        sending, receipt = startups_ps(machine, pe.number, owner)
+        ask_ps = sending + copy_ps(machine.pack[REQUEST], asked)
+        receive_ps = receipt + copy_ps(machine.unpack[OBJECT], fetched)
         between_ps = (
             network_ps(machine, pe.number, owner, asked)
-            + machine.receive_startup_ps
+            + receipt
             + copy_ps(machine.unpack[REQUEST], asked)
-            + machine.send_startup_ps
+            + sending
             + copy_ps(machine.pack[OBJECT], fetched)
             + network_ps(machine, owner, pe.number, fetched)
         )

@@ -10,7 +10,7 @@ from typing import Any
 
 from oracles.costs import Stage, copy_ps
 from oracles.ledger import Ledger
-from oracles.network import Network, network_ps
+from oracles.network import Network, network_ps, startups_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS
@@ -89,7 +89,7 @@ class World:
     def send(self, clock: int, pe: PE, destination: int, parts: Sequence[Part]) -> int:
         """Pack a message and let it depart; returns the time of that."""
         begin = clock
-        cost = self.machine.send_startup_ps
+        cost, _ = startups_ps(self.machine, pe.number, destination)
         cost += sum(copy_ps(self.machine.pack[part.kind], part.payload_bytes) for part in parts)
         clock = self.pay("communication", pe, clock, cost)
         message = Message(pe.number, destination, pe.sends, tuple(parts), pe.load, clock)

@@ -40,6 +40,7 @@ def priced(machine: Machine, times: tuple[int, ...], test_ps: int, copy_ps: int)
     """Costs of these times, in the order of TIMES; bytes cost nothing."""
     copies, named = (CopyCost(copy_ps),) * 4, dict(zip(TIMES, times, strict=True))
     of_levels = {"latency_ps": named["latency_ps"], "gap_ps": named["probe_ps"], "bytes_per_s": 0}
+    of_levels |= {name: named[name] for name in TIMES[:2]}
     return replace(
         machine,
         **named,
@@ -95,7 +96,8 @@ def test_a_slower_clock_gives_the_same_run_up_to_its_limit(
 ) -> None:
     """All times f times as long: the makespan is exactly f times as long, or the run is refused."""
     case = random_case(seed)
-    case = replace(case, policy=replace(case.policy, refresh_ps=None))  # the one time of a policy
+    policy = replace(case.policy, refresh_ps=None, load_info="piggyback", sample_ps=None)
+    case = replace(case, policy=policy)  # which has no times of its own
 
     def run_at(factor: int) -> Outcome:
         times = tuple(factor * time for time in (3, 2, 1, 5, 1, 7))

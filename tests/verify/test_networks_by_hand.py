@@ -55,6 +55,23 @@ def test_100_bytes_take_what_their_level_says(
     assert (arrival_ps, destination) == (flight_ps, other)
 
 
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+@pytest.mark.parametrize(("other", "makespan_ps"), [(1, 1710), (6, 2620)])
+def test_a_fetch_pays_the_startups_of_its_level(
+    implementation: str, other: int, makespan_ps: int
+) -> None:
+    # node    request 1 + 3 + 2 = 6, there 5 + 12: 23; received 4 + 6: 33; answered 3 + 53: 89,
+    #         there 5 + 54: 148; received 4 + 57: 209; probe, test and ray 1501: 1710
+    # system  1 + 30 + 2 = 33, 100 + 120: 253; 40 + 6: 299; 30 + 53: 382, 100 + 540: 1022;
+    #         40 + 57: 1119; 1501: 2620
+    startups = {"send_startup_ps": 3, "receive_startup_ps": 4}
+    node = replace(NODE, **startups)
+    system = replace(SYSTEM, **{name: 10 * ps for name, ps in startups.items()})
+    levels = {**LEVELS, "levels": (node, GROUP, system)}
+    case = case_of(OBJECT, [(0, [1])], owners=(0, other), shape=SHAPE, **levels)
+    assert run(implementation, case).makespan_ps == makespan_ps
+
+
 def arrivals(*messages: tuple[int, int, int, int]) -> list[int]:
     """When (departure, source, destination, bytes) arrive, as the oracle says too."""
     here = replace(MACHINE, shape=SHAPE, **LEVELS)
@@ -90,11 +107,14 @@ def made(levels: dict[str, Any], preset: str = "t3e", processors: int = 16, **mo
 
 
 def test_a_level_has_what_it_says_and_the_machines_otherwise() -> None:
-    found = made({"node": {"size": 4, "latency": "1 us"}, "all": {"bandwidth": "1 GB/s"}})
+    whole_of = {"bandwidth": "1 GB/s", "receive_startup": "3 us"}
+    found = made({"node": {"size": 4, "latency": "1 us"}, "all": whole_of})
     assert found.topology == "levels" and found.processors == 16
     node, whole = found.levels
-    assert node == Level("node", 4, latency_ps=10**6, bytes_per_s=340 * 10**6)
-    assert whole == Level("all", 0, latency_ps=2 * 10**6, bytes_per_s=10**9)
+    startups = {"send_startup_ps": 10**7, "receive_startup_ps": 2 * 10**7}
+    assert node == Level("node", 4, latency_ps=10**6, bytes_per_s=340 * 10**6, **startups)
+    startups["receive_startup_ps"] = 3 * 10**6
+    assert whole == Level("all", 0, latency_ps=2 * 10**6, bytes_per_s=10**9, **startups)
     assert found.sources["levels.node.latency"] == OVERRIDDEN
     assert "levels.all.latency" not in found.sources
     assert str(topology_of(found)) == "node of 4, all of 4"

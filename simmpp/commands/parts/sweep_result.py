@@ -18,6 +18,7 @@ from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
 from simmpp.sweeps.winners.answer import answer
+from simmpp.sweeps.winners.machines import machines_of
 from simmpp.sweeps.winners.points import points_of
 from simmpp.sweeps.winners.sentence import Sentence
 
@@ -46,9 +47,10 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
 def _answer(out: Path) -> list[Sentence]:
     """Who wins, as the page of the folder says."""
     folder = read_folder(out)
-    return answer(
-        points_of(folder.rows, folder.further, folder.profits, folder.labels, folder.confidence)
+    points = points_of(
+        folder.rows, folder.further, folder.profits, folder.labels, folder.confidence
     )
+    return answer(points, machines_of(points, folder.record))
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:

@@ -37,7 +37,7 @@ from simmpp.engine.arrays.views import (
     sort_keys,
 )
 from simmpp.engine.network import depart
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, sending_ps
 from simmpp.engine.pe.credits import take_owed
 from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
@@ -193,7 +193,7 @@ def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
     pe, m = pes(s)[me], messages(s)[row]
     m.source, m.load, m.number = me, pe.load, pe.messages_sent
-    m.depart_ps = now_ps + s.send_startup_ps + parts_ps(s, row, PACK)
+    m.depart_ps = now_ps + sending_ps(s, me, m.destination, m.kind) + parts_ps(s, row, PACK)
     depart(s, m)
     if s.bounded:
         m.credit = take_owed(s, me, m.destination)

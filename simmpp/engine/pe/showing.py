@@ -18,7 +18,7 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
 from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
 from simmpp.machine.messages import RAYS
@@ -49,8 +49,10 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
-        view.receive_ps = s.receive_startup_ps + copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
+        pack_ps = copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
+        unpack_ps = copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
+        view.send_ps = sending_ps(s, me, other, RAYS) + pack_ps
+        view.receive_ps = receiving_ps(s, other, me, RAYS) + unpack_ps
         view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
     if s.send_reads & WANTED:
         show_wanted(s, view, me, peer_row)

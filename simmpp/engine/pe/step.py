@@ -35,6 +35,7 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.pe.admission import can_unpack, unpack, unpacking_ps
+from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.escape import ESCAPED, admit_escape
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
@@ -130,7 +131,7 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         cross(s, m.first, m.n, links)
     if s.measures:
         note_receipt(s, me, message)
-    clock_ps = now_ps + s.receive_startup_ps
+    clock_ps = now_ps + receiving_ps(s, me, m.source, m.kind)
     if s.bounded:
         clock_ps += unpacking_ps(s, me, message)
     else:

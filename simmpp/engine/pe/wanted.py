@@ -14,7 +14,7 @@ from simmpp.engine.arrays.views import (
     sendable,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
 from simmpp.engine.pe.misses import is_holder
 from simmpp.machine.messages import OBJECT, REQUEST
 from simmpp.policy.view import View
@@ -25,12 +25,13 @@ def fetch_ps(s: Run, me: int, obj: int) -> tuple[int, int, int]:
     """What sending the request costs, what receiving the object, and the time in between."""
     costs, asked, owner = copy_costs(s), s.request_bytes, owners(s)[obj]
     n_bytes = object_bytes(s)[obj]
-    send_ps = s.send_startup_ps + copy_ps(costs[PACK + REQUEST], asked)
-    receive_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + OBJECT], n_bytes)
+    send_ps = sending_ps(s, me, owner, REQUEST) + copy_ps(costs[PACK + REQUEST], asked)
+    unpack_ps = copy_ps(costs[UNPACK + OBJECT], n_bytes)
+    receive_ps = receiving_ps(s, me, owner, OBJECT) + unpack_ps
     there_ps = flight_ps(s, me, owner, asked + s.header_bytes)
     back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    answer_ps = s.receive_startup_ps + copy_ps(costs[UNPACK + REQUEST], asked)
-    answer_ps += s.send_startup_ps + copy_ps(costs[PACK + OBJECT], n_bytes)
+    answer_ps = receiving_ps(s, owner, me, REQUEST) + copy_ps(costs[UNPACK + REQUEST], asked)
+    answer_ps += sending_ps(s, owner, me, OBJECT) + copy_ps(costs[PACK + OBJECT], n_bytes)
     return send_ps, receive_ps, there_ps + answer_ps + back_ps
 
 

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from math import prod
 from typing import Any
 
 from simmpp.common.files import Row
@@ -15,6 +14,7 @@ from simmpp.report.page.folder import Folder
 from simmpp.report.page.together import FOLDER
 from simmpp.run import words
 from simmpp.run.limits import COMPUTE, PARTS, Limits, MessageCosts, limits_of, together
+from simmpp.run.machines import machine_of
 from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.winners.contest import contests_of
 from simmpp.sweeps.winners.points import ACCOUNTS, Points
@@ -50,25 +50,24 @@ class PointLimits:
 def limits_of_points(folder: Folder, points: Points) -> PointLimits:
     """Work them out from rows, the record's machines and, of a run, the accounts of its PEs."""
     folders = folder.parts or {"": folder}
-    told = {name: (_costs(f.record), _accounts(f.record)) for name, f in folders.items()}
+    told = {name: (f.record, _accounts(f.record)) for name, f in folders.items()}
     found = {}
     for number, profit in enumerate(points.profits):
-        costs, accounts = told[profit[FOLDER] if folder.parts else ""]
+        record, accounts = told[profit[FOLDER] if folder.parts else ""]
         runs, nb = points.runs[number], profit["processors"]
         of_pes = accounts.get(profit["policy"], ()) if len(runs) == 1 else ()
         if runs and all(row.get(name, "") != "" for row in runs for name in NEEDED):
-            found[number] = together(limits_of(row, nb, costs.get(nb), *of_pes) for row in runs)
+            costs = _costs(record, profit)
+            found[number] = together(limits_of(row, nb, costs, *of_pes) for row in runs)
     return PointLimits(points, found)
 
 
-def _costs(record: Mapping[str, Any]) -> dict[int, MessageCosts]:
-    """By number of PEs; where machines of one number differ, nobody knows which a row is of."""
-    found: dict[int, set[MessageCosts]] = {}
-    machines = record.get("machines")
-    for constants in machines if isinstance(machines, list) else []:
-        with suppress(KeyError, TypeError, ValueError):  # another version's record
-            found.setdefault(prod(constants["shape"]), set()).add(MessageCosts.of(constants))
-    return {nb: costs.pop() for nb, costs in found.items() if len(costs) == 1}
+def _costs(record: Mapping[str, Any], row: Row) -> MessageCosts | None:
+    """Of a row's machine, as far as its record tells."""
+    with suppress(KeyError, TypeError, ValueError):  # another version's record
+        if constants := machine_of(record, row):
+            return MessageCosts.of(constants)
+    return None
 
 
 def _accounts(record: Mapping[str, Any]) -> dict[str, tuple[list[int], list[int]]]:

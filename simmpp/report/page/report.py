@@ -7,15 +7,15 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from simmpp.common.files import write_text
+from simmpp.common.files import Row, write_text
 from simmpp.common.folders import is_at_work
 from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.figure import Figure, figure_data
-from simmpp.report.page.figures.groups import FIGURE_GROUPS, LIMITS_ID, FigureGroup
+from simmpp.report.page.figures.groups import FIGURE_GROUPS, LIMITS_ID, MACHINES_ID, FigureGroup
 from simmpp.report.page.findings import further, wins
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.glossary import glossary
@@ -34,12 +34,28 @@ from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.contest import replicated_policies
+from simmpp.sweeps.winners.machines import machines_of
+from simmpp.sweeps.winners.machines_told import machine_table
 from simmpp.sweeps.winners.points import Points, points_of
 from simmpp.sweeps.winners.sentence import Sentence
 
 PAGE = "report.html"
 LOOK_S = 1.0
 """Seconds between two looks at the tables of a sweep that runs."""
+
+LIMITS_SUMMARY = "The fastest dataflow of each case, part by part"
+MACHINES_SUMMARY = "Each machine with each number of nodes"
+
+
+class Table(NamedTuple):
+    """A table of a group of figures."""
+
+    name: str
+    of_many: str
+    """Its name where it is folded, as it has many lines."""
+    summary: str
+    """What stands above it then."""
+    lines: Sequence[Row]
 
 
 @dataclass(frozen=True)
@@ -125,7 +141,8 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
     folder, points = report.folder, report.points
     pictures = [] if folder.parts else beside(folder.path)
     along = abscissas(points.axes)[0]
-    answered = [] if _has_no_rows(report) else answer(points)
+    machines = machines_of(points, folder.record)
+    answered = [] if _has_no_rows(report) else answer(points, machines)
     said, warned = _sentences(report), report.warnings(is_followed=is_running)
     made = origin(folder)
     return {
@@ -136,8 +153,16 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "answer": answered,
         "flows": _flows(report.points),
         "sentences": said,
-        "limits": limit_table(report.limits),
-        "limits_of": LIMITS_ID,
+        "tables": {
+            LIMITS_ID: Table(
+                *("What limits it", "What limits the fastest", LIMITS_SUMMARY),
+                limit_table(report.limits),
+            ),
+            MACHINES_ID: Table(
+                *("Machines in seconds", "Machines in seconds", MACHINES_SUMMARY),
+                machine_table(machines),
+            ),
+        },
         "wins": wins(points),
         "along": {"policy": "", "fraction": "scene in memory"}.get(along, along),
         "claims": folder.claims,

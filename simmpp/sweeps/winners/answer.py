@@ -21,6 +21,8 @@ from simmpp.sweeps.winners.contest import (
     Contest,
     contests_of,
 )
+from simmpp.sweeps.winners.machines import Machines
+from simmpp.sweeps.winners.machines_told import machine_sentences
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
 from simmpp.sweeps.winners.sentence import Sentence
 from simmpp.sweeps.winners.several import cases_of, few, shortest, told
@@ -37,8 +39,8 @@ def answer_of(
     return answer(points_of(rows, tuple(further), labels=labels))
 
 
-def answer(points: Points) -> list[Sentence]:
-    """The same of points."""
+def answer(points: Points, machines: Machines | None = None) -> list[Sentence]:
+    """The same of points, with their machines where they are compared."""
     contests = contests_of(points)
     if not contests:
         return [Sentence("No point has a result.")]
@@ -48,7 +50,8 @@ def answer(points: Points) -> list[Sentence]:
     elif len(contests) == 1:
         lines = [Sentence(f"{_one(points, contests[0])}.", (contests[0].best,))]
     else:
-        lines = [*told(points, contests), *shortest(points, contests)]
+        of_machines = list(machine_sentences(machines)) if machines else []
+        lines = [*told(points, contests), *(of_machines or shortest(points, contests))]
     return [*lines, *_absent(points, contests), *_ceiling(points, contests), *_failed(points)]
 
 

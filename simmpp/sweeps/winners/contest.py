@@ -82,7 +82,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
     times = means(points, flows)
     best, *others = sorted(flows, key=lambda n: times[n])
     ratios = {n: makespan_ratios(points, n, best) for n in others}
-    verdicts = {n: _verdict(of, points.confidence) for n, of in ratios.items()}
+    verdicts = {n: verdict(of, points.confidence) for n, of in ratios.items()}
     certainty = _certainty([*verdicts.values()])
     second = next((n for n in others if verdicts[n] == certainty), None)
     lead = MeanInterval.unknown()
@@ -96,7 +96,7 @@ def _contest(points: Points, flows: list[int], ceilings: list[int]) -> Contest:
         lead.low,
         lead.high,
         certainty,
-        tuple(n for n, verdict in verdicts.items() if verdict in (UNSURE, EQUAL)),
+        tuple(n for n, found in verdicts.items() if found in (UNSURE, EQUAL)),
         tuple(points.flow(n) for n in (best, *others)),
         len(ratios[second]) if second is not None else len(points.runs[best]),
         of_logarithms(top).mean if top else None,
@@ -119,7 +119,7 @@ def makespan_ratios(points: Points, above: int, below: int) -> list[float]:
     return [ratio(upper["makespan_ps"], lower["makespan_ps"]) for upper, lower in both]
 
 
-def _verdict(ratios: list[float], confidence: float) -> str:
+def verdict(ratios: list[float], confidence: float) -> str:
     """Whether one is slower than the fastest."""
     if ratios and all(value == 1 for value in ratios):
         return EQUAL

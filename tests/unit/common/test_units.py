@@ -130,6 +130,30 @@ def test_wrong_times_say_what_was_expected(value: object) -> None:
         units.picoseconds(value)
 
 
+def test_powers_and_prices() -> None:
+    assert units.milliwatts("1.275 kW") == 1_275_000
+    assert units.milliwatts(0) == 0
+    assert units.price_micros("4.916/h") == units.price_micros(" 4.916 / h") == 4_916_000
+    assert units.price_micros("0/h") == 0
+    for power in (1, 628_000, 1_275_000, 10**12):
+        assert units.milliwatts(units.write_mw(power)) == power
+    for price in (0, 1, 127_500, 5_000_000, 10**15):
+        assert units.price_micros(units.write_price(price)) == price
+    assert units.write_price(5_000_000) == "5/h"
+
+
+@pytest.mark.parametrize("value", [3, "3", "-3/h", "3 W", "3 $/h", "9" * 16 + "/h", None])
+def test_wrong_prices(value: object) -> None:
+    with pytest.raises(ConfigError, match=r"expected a price of an hour such as '4\.92/h'"):
+        units.price_micros(value)
+
+
+@pytest.mark.parametrize("value", [3, "3", "-3 W", "3 Wh", "2000 MW", None])
+def test_wrong_powers(value: object) -> None:
+    with pytest.raises(ConfigError, match="expected a power such as '630 W'"):
+        units.milliwatts(value)
+
+
 @pytest.mark.parametrize("value", [0, "0 MB/s", "999 B/s", "fast", "-1 B/s", "5 MB", "8 mb/s"])
 def test_wrong_bandwidths(value: object) -> None:
     with pytest.raises(ConfigError, match="expected a bandwidth"):

@@ -5,14 +5,29 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from simmpp.report.page.figures import accuracy, bar_figures, folder_figures, paper, profit_figures
+from simmpp.report.page.figures import (
+    accuracy,
+    bar_figures,
+    folder_figures,
+    machine_figures,
+    paper,
+    profit_figures,
+)
 from simmpp.report.page.figures.figure import Figure
 from simmpp.report.page.figures.profit_figures import ProfitData
 from simmpp.report.page.folder import Folder
 from simmpp.report.page.limits import PointLimits
+from simmpp.sweeps.winners.machines import machines_of
 
 OVER = "A line is a folder, a panel a dataflow. Click a point to see it in depth."
 CLICKING = "Click a point to see it in depth; click a name to hide its curve."
+MACHINES_ID = "machines"
+MACHINES = (
+    "The same work on each machine, by the dataflow that is the fastest there. Node-seconds are "
+    "PEs x makespan: they cost alike only if nodes do. Energy and price are those of machines that "
+    "state a PE's power and the price of its hour (simmpp machine NAME), for the time of the run "
+    "alone. Click a point to see it in depth."
+)
 LIMITS_ID = "accounts"
 LIMITS = (
     "The makespan in parts that add up to it. Startups: what messages cost their two PEs whatever "
@@ -42,6 +57,12 @@ FIGURE_GROUPS = (
     FigureGroup(
         *("paper", "The paper's figures", CLICKING, paper.STEMS),
         lambda folder, limits: paper.paper_figures(folder, limits.points),
+    ),
+    FigureGroup(
+        *(MACHINES_ID, "Machines", MACHINES, machine_figures.STEMS),
+        lambda folder, limits: machine_figures.machine_figures(
+            machines_of(limits.points, folder.record)
+        ),
     ),
     FigureGroup(
         *("folders", "Folders over each other", OVER, folder_figures.STEMS),

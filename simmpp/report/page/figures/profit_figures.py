@@ -147,7 +147,7 @@ def _panels(
         units = {n: Spread(*(end / size for end in spreads[n])) for n in of}
         curves[title] = list(_curves(data, placed, units, name))
     label = words.uncapital(measure.title) + (f" ({unit})" if unit else "")
-    y = _scale(label, chain(*curves.values()))
+    y = scale_of(label, chain(*curves.values()))
     return [Panel(title, x, y, of, level=measure.level) for title, of in curves.items()]
 
 
@@ -159,7 +159,7 @@ def _place(data: ProfitData, number: int, along: str, asked: float) -> float:
     return float(points.held(own_number)) * PERCENT
 
 
-def _scale(label: str, curves: Iterable[Curve]) -> Scale:
+def scale_of(label: str, curves: Iterable[Curve]) -> Scale:
     """One scale for all panels of a plate; logarithmic if values differ much."""
     spreads = [spread for curve in curves for spread in curve.points.values()]
     if not spreads:

@@ -20,6 +20,7 @@ from simmpp.report.page.limits import (
 )
 from simmpp.report.page.report import report_of, write_page
 from simmpp.run.limits import BANDWIDTH, COMPUTE, COPYING, HOT, IMBALANCE, LATENCY, STARTUPS
+from simmpp.run.machines import MACHINE_OF
 from simmpp.sweeps.winners.points import points_of
 
 FOUR = replace(MACHINE, shape=(4, 1, 1))
@@ -36,8 +37,10 @@ NUMBERS: dict[str, Any] = {
 }
 
 
-def limits_in(folder: Path, rows: list[Row], record: dict[str, Any]) -> PointLimits:
-    (written(folder, rows) / "run.json").write_text(json.dumps(record))
+def limits_in(
+    folder: Path, rows: list[Row], record: dict[str, Any], further: tuple[str, ...] = ()
+) -> PointLimits:
+    (written(folder, rows, further) / "run.json").write_text(json.dumps(record))
     found = read_folder(folder)
     return limits_of_points(found, points_of(found.rows, found.further))
 
@@ -99,6 +102,14 @@ def test_a_sweep_tells_what_its_rows_know(tmp_path: Path) -> None:
         "Besides computing, the fastest dataflow is limited most by copying in 2 of 2 cases (15 % "
         "of the makespan)."
     )
+
+
+def test_machines_that_differ_are_told_by_what_was_swept(tmp_path: Path) -> None:
+    slow, at = replace(FOUR, send_startup_ps=99), {"processors": 4, "machine.send_startup": "99 ps"}
+    record = {"machines": [asdict(FOUR), asdict(slow)], MACHINE_OF: [{"at": at, "machine": 1}]}
+    rows = [row(**NUMBERS, **{"machine.send_startup": cell}) for cell in ("99 ps", "1 ps")]
+    limits = limits_in(tmp_path, rows, record, ("machine.send_startup",))
+    assert ["startups" in of.parts_ps for of in limits.of.values()] == [False, True]
 
 
 def test_machines_that_differ_are_not_mistaken_for_each_other(tmp_path: Path) -> None:

@@ -221,6 +221,24 @@ def test_only_stills_that_are_drawn_are_linked(tmp_path: Path) -> None:
     assert "As a file" not in page_of(folder, is_running=True).text
 
 
+def test_machines_of_a_sweep_are_curves_and_a_table(tmp_path: Path) -> None:
+    key, machines = "machine.preset", ("t3e", "cluster")
+    rows = [
+        row(policy, seed, processors=nb, **{key: name})
+        for policy in ("object", "ray")
+        for seed in (0, 1)
+        for nb in (4, 8)
+        for name in machines
+    ]
+    page = page_of(written(tmp_path, rows, (key,)))
+    assert {"machines"} <= {attrs.get("id") for tag, attrs in page.tags if tag == "section"}
+    (plate,) = page.data["figures"]["machines-node-seconds"]["plates"]
+    curves = [of["name"] for of in plate["panels"][0]["data"] if of.get("customdata")]
+    assert curves == [f"{name}: object dataflow" for name in sorted(machines)]
+    assert page.text.count("fewest node-seconds") == 1
+    assert "Machines" not in page_of(written(tmp_path / "one", sweep(processors=[4, 8]))).text
+
+
 def test_a_bench_is_a_figure(tmp_path: Path) -> None:
     keys = ("scene", "processors", "fraction")
     rows = [
