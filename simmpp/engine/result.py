@@ -46,6 +46,8 @@ COLUMNS = (
 """Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
 PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
 """Further ones, in rows of sweeps in which a policy packs."""
+USER_COLUMNS = ("user_messages", "user_dropped")
+"""Likewise, in which a policy sends messages of its own."""
 
 
 @documented
@@ -87,6 +89,10 @@ class Result(Displayed):
     """(nb,) int64: most bytes of objects, resident and fetched, that each PE held."""
     events: int
     """Activities and arrivals."""
+    user_messages: int = 0
+    """Messages of the policy's own that were sent."""
+    user_dropped: int = 0
+    """Further ones that were not: too many, or to nobody."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     memory: MemoryUse | None = None
@@ -116,7 +122,7 @@ class Result(Displayed):
     @property
     def messages(self) -> int:
         """Messages sent, of all kinds."""
-        return sum(self.messages_by_kind)
+        return sum(self.messages_by_kind) + self.user_messages
 
     @property
     def parts(self) -> int:
@@ -188,7 +194,8 @@ def concluded(
     communication_ps = state.pes["communication_ps"] - overrun_ps
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
-    sent_by_kind, bytes_sent = state.sent_until(makespan_ps)
+    (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
+    sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
         raise ModelError(f"the accounts of a PE exceed the makespan of {makespan_ps} ps")
@@ -210,6 +217,8 @@ def concluded(
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
+        user_messages=user_messages,
+        user_dropped=state["user_dropped"],
         rules_never_fired=_never_fired(state, parts_by_kind),
         memory=use,
         log=log,
@@ -224,7 +233,7 @@ def _parts(state: State, sent_by_kind: tuple[int, int, int, int]) -> tuple[int, 
     """Only packed messages have their parts counted; of loads nothing is packed."""
     if state["packing"] == SINGLY:
         return sent_by_kind
-    requests, objects, rays, _ = state.arrays["parts_by_kind"].tolist()
+    requests, objects, rays, *_ = state.arrays["parts_by_kind"].tolist()
     return requests, objects, rays, sent_by_kind[LOAD]
 
 

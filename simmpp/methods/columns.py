@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from simmpp.engine import result
 
@@ -13,12 +13,13 @@ METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = result.COLUMNS
 """Integers of a run; empty where the method does not know."""
-PACKED = result.PACKED_COLUMNS
-"""Further ones, of sweeps in which a policy packs."""
+BY_USE = {"packs": result.PACKED_COLUMNS, "talks": result.USER_COLUMNS}
+"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``)."""
+FURTHER = tuple(name for names in BY_USE.values() for name in names)
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 
-def result_columns(further: Sequence[str] = (), *, packs: bool = False) -> tuple[str, ...]:
-    """The columns of ``results.csv`` with those of a sweep's further keys."""
-    numbers = (*NUMBERS, *PACKED) if packs else NUMBERS
-    return (*KEYS, *further, METHOD, "engine", *numbers, "error")
+def result_columns(further: Sequence[str] = (), uses: Collection[str] = ()) -> tuple[str, ...]:
+    """The columns of ``results.csv`` with those of a sweep's further keys, and of what it uses."""
+    used = (name for use, names in BY_USE.items() if use in uses for name in names)
+    return (*KEYS, *further, METHOD, "engine", *NUMBERS, *used, "error")

@@ -60,8 +60,8 @@ class Plan:
     @property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
-        packs = any(planned.point.policy.packs for planned in self.points)
-        return result_columns(self.further, packs=packs)
+        uses = {use for planned in self.points for use in planned.point.policy.uses}
+        return result_columns(self.further, uses)
 
     @property
     def tasks(self) -> list[Task]:

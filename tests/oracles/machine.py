@@ -12,19 +12,19 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from oracles.costs import intersection_ps
-from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
 from oracles.network import distance, startups_ps
 from oracles.state import PE, Message, Part
+from oracles.talking import Talking
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
-class Simulation(Dispatch):
+class Simulation(Talking):
     """The event loop and the activities of a PE."""
 
     def run(self) -> None:
@@ -36,6 +36,8 @@ class Simulation(Dispatch):
             "begin": self.begin,
             "dispatch": self.dispatch,
             "take": self.take,
+            "rest": self.rest,
+            "wake": self.wake,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -79,7 +81,7 @@ class Simulation(Dispatch):
             n_tests = len(self.ledger.tested) - tests_before
             self.ledger.open[pe.number] = (time, "compute", n_tests)
         else:
-            pe.asleep = True
+            self.fall_asleep(time, pe)
             return
         self.sample_bytes(pe)
         self.note_memory(pe)
@@ -96,6 +98,7 @@ class Simulation(Dispatch):
         pe.in_flight_to[message.source] = 0
         if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
+            self.get_on(pe)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -118,6 +121,8 @@ class Simulation(Dispatch):
                 for part in wanted
             ]
             clock = self.send(clock, pe, message.source, answer)
+        if message.count(USER):
+            clock = self.hear(clock, pe, message)
         self.sample_rays(pe)
         return clock
 
@@ -171,6 +176,7 @@ class Simulation(Dispatch):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
+        self.get_on(pe)
         clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
         self.positions[ray] += 1
         was_granted = ray in pe.granted
@@ -198,6 +204,7 @@ class Simulation(Dispatch):
         """A ray is shaded and leaves its children here."""
         clock = self.pay("compute", pe, clock, self.machine.ray_ps)
         self.ledger.finished_ps.append(clock)
+        self.get_on(pe)
         self.rays_left -= 1
         self.alive += len(self.children[ray]) - 1
         pe.ready.remove(ray)
@@ -214,7 +221,8 @@ class Simulation(Dispatch):
         clock = self.send_all(time, pe)
         self.note_stalls(time, pe)
         self.note_memory(pe)
-        self.ledger.end_activity(pe.number, clock)
+        if pe.number in self.ledger.open:  # not when it was woken
+            self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:
             self.schedule(clock, pe, "begin")
         else:

@@ -288,7 +288,7 @@ class Bounded(World):
     def unpacking_ps(self, pe: PE, message: Message) -> int:
         """Cost of unpacking a message; with credits, of those rays that are taken in now."""
         pe.credit[message.source] += message.credit
-        cost, copies = 0, self.machine.unpack
+        cost, copies = 0, (*self.machine.unpack, self.machine.unpack[REQUEST])
         for part in message.parts:
             if part.kind == RAYS and self.credits:
                 pe.shares.append(Lying(message.source, list(part.rays)))

@@ -16,7 +16,9 @@ from simmpp.engine.arrays.records import (
     FOR_ESCAPE,
     NONE,
     SAMPLED,
+    SLEEP,
     UNPACK,
+    WOKEN,
     Row,
     Run,
 )
@@ -44,13 +46,12 @@ from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
 from simmpp.engine.pe.ready import cross, finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.rooms import has_ready, note_memory, note_receipt
 from simmpp.engine.pe.sending import answer, forget, parts_ps
+from simmpp.engine.pe.talking import get_on, hear, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
 from simmpp.machine.topology import hops
-
-SLEEP = -1
 
 
 @kernel
@@ -59,36 +60,41 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold the phase of that instant, whether the message was consumed
-    and the number of messages in the outbox.
+    and the number of messages in the outbox. With phase WOKEN the PE sleeps as well: a message
+    that arrives before that time wakes it, and there is no such instant any more.
     """
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
         sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
+    if phase == WOKEN and message == NONE:
+        wake(s, me, now_ps)
+        phase = DISPATCH
     if phase == DISPATCH:
         next_ps = dispatch(s, me, message == NONE, now_ps)
     # What was sent departs by now; a dispatch that sent nothing took no time, so the next activity
     # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
-        next_ps = _begin(s, me, message, now_ps)
+        next_ps = _begin(s, me, phase, message, now_ps)
     if s.measures:
         note_memory(s, me)
-    pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
+    if s.phase != WOKEN:
+        pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
     return next_ps
 
 
 @kernel
-def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
+def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
     unpacks = message == NONE and s.bounded and can_unpack(s, me)
     if message == NONE and not unpacks and not has_ready(s, me):
-        return SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
     s.activities += 1
     if s.bounded:
         _require_progress(s)
@@ -150,6 +156,10 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
     clock_ps = answer(s, me, message, clock_ps)
+    if m.kind == USER:
+        clock_ps = hear(s, me, message, clock_ps)
+    elif m.kind == OBJECT or m.kind == RAYS:
+        get_on(pe)
     s.received += 1
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
@@ -220,6 +230,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             finish_ray(s, me, ray, clock_ps)
     if tests > 0 or s.rays_done > done:
         s.progress_at = s.activities
+        get_on(pe)
     if s.logs:
         note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
     if s.record_counters:
