@@ -22,7 +22,7 @@ from simmpp.engine.event_heap import (
 )
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
-from simmpp.engine.pe.rooms import note_arrival_of
+from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking

@@ -20,7 +20,7 @@ from simpy.events import Event
 from simmpp.common.compiled import entry_point, njit
 from simmpp.engine.arrays.records import BEGIN, MESSAGE, NONE, SLEEP, WOKEN
 from simmpp.engine.network import move_head
-from simmpp.engine.pe.rooms import note_arrival_of
+from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State

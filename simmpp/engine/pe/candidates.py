@@ -18,7 +18,7 @@ from simmpp.engine.arrays.views import (
     sendable,
     unsent,
 )
-from simmpp.engine.pe.credits import enough_for
+from simmpp.engine.pe.bounds.credits import enough_for
 from simmpp.engine.pe.peers import peer_of
 
 

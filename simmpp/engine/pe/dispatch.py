@@ -23,11 +23,9 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key
+from simmpp.engine.arrays.hashtable import first, following, sort_by_key
 from simmpp.engine.arrays.records import NONE, SINGLY, TWO, Row, Run
 from simmpp.engine.arrays.views import (
-    due,
-    exchanged,
     miss_rows,
     owners,
     peer_rows,
@@ -40,22 +38,21 @@ from simmpp.engine.arrays.views import (
     unasked,
     unsent,
 )
-from simmpp.engine.pe.admission import can_unpack
+from simmpp.engine.pe.bounds.admission import can_unpack
+from simmpp.engine.pe.bounds.credits import enough_for, rays_allowed, spend
+from simmpp.engine.pe.bounds.escape import escape
+from simmpp.engine.pe.bounds.rooms import ASKS, SENDS, has_ready, note_stalls, release_rays
 from simmpp.engine.pe.candidates import withdraw
-from simmpp.engine.pe.credits import enough_for, rays_allowed, spend
-from simmpp.engine.pe.escape import escape
 from simmpp.engine.pe.fetched import reserve_object
 from simmpp.engine.pe.misses import is_holder, set_unasked, unfile
 from simmpp.engine.pe.peers import known_load
-from simmpp.engine.pe.rooms import ASKS, SENDS, has_ready, note_stalls, release_rays
 from simmpp.engine.pe.sending import (
-    send_credit,
-    send_load,
     send_made_up,
     send_rays,
     send_request,
 )
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
+from simmpp.engine.pe.telling import collect_peers, refresh_loads, return_credits
 from simmpp.engine.record.counters import note_work
 from simmpp.policy.record import consult
 from simmpp.policy.view import View
@@ -79,9 +76,9 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     if s.packing != SINGLY:
         clock_ps = send_made_up(s, me, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
-        clock_ps = _refresh_loads(s, me, clock_ps)
+        clock_ps = refresh_loads(s, me, clock_ps)
     if s.bounded:
-        clock_ps = _return_credits(s, me, clock_ps)
+        clock_ps = return_credits(s, me, clock_ps)
         note_stalls(s, me, now_ps)
     if s.record_counters and clock_ps > now_ps:
         note_work(s, me, now_ps, clock_ps, clock_ps)
@@ -93,9 +90,9 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
 def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
     pe = pes(s)[me]
     # Collected before the first message, as sending changes the lists.
-    n = _collect_peers(s, me, unsent(s), 2 * me + 1, 0)
+    n = collect_peers(s, me, unsent(s), 2 * me + 1, 0)
     if view.nothing_else:
-        n = _collect_peers(s, me, unsent(s), 2 * me, n)
+        n = collect_peers(s, me, unsent(s), 2 * me, n)
     clock_ps = now_ps
     if s.load_info == TWO and s.to_holders and n > 2:
         n = _keep_two(s, pe, me, n)
@@ -147,20 +144,6 @@ def _still_enough(s: Run, view: View, peer_row: int) -> bool:
     """Is ``send`` to be asked, after rays that could have gone here went elsewhere?"""
     n = peer_rows(s)[peer_row].sendable
     return n >= enough_for(s, peer_row) or (n > 0 and view.nothing_else == 1)
-
-
-@kernel
-def _collect_peers(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
-    """Add the peers of one list to the first n of ``sort_items``, in ring order from me."""
-    nb = s.processors
-    row = first(lists, which)
-    while row >= 0:
-        sort_keys(s)[n] = (peer_rows(s)[row].key % nb - me) % nb
-        sort_items(s)[n] = row
-        n += 1
-        row = following(lists, row)
-    sort_by_key(sort_keys(s), sort_items(s), n)
-    return n
 
 
 @kernel
@@ -256,27 +239,3 @@ def _collect_misses(s: Run, me: int, nothing_else: int) -> int:
             row = following(unasked(s), row)
     sort_by_key(sort_keys(s), sort_items(s), n)
     return n
-
-
-@kernel
-def _return_credits(s: Run, me: int, now_ps: int) -> int:
-    """Tell peers that are owed half of their share or more, and that were sent nothing."""
-    clock_ps = now_ps
-    for i in range(_collect_peers(s, me, due(s), me, 0)):
-        other = peer_rows(s)[sort_items(s)[i]].key % s.processors
-        clock_ps = send_credit(s, me, other, clock_ps)
-    return clock_ps
-
-
-@kernel
-def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
-    """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
-
-    Not after the receipt of such a message, or loads would answer loads for ever.
-    """
-    clock_ps = now_ps
-    for i in range(_collect_peers(s, me, exchanged(s), me, 0)):
-        peer = peer_rows(s)[sort_items(s)[i]]
-        if clock_ps - peer.sent_ps >= s.refresh_ps:
-            clock_ps = send_load(s, me, peer.key % s.processors, clock_ps)
-    return clock_ps

@@ -10,7 +10,7 @@ from __future__ import annotations
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, most_alive, pes, pixels, rays, rooms
-from simmpp.engine.pe.rooms import fits, note_memory
+from simmpp.engine.pe.bounds.rooms import fits, note_memory
 
 
 @kernel

@@ -38,8 +38,8 @@ from simmpp.engine.arrays.views import (
     user_words,
 )
 from simmpp.engine.network import depart
+from simmpp.engine.pe.bounds.credits import take_owed
 from simmpp.engine.pe.costs import copy_ps, sending_ps
-from simmpp.engine.pe.credits import take_owed
 from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send

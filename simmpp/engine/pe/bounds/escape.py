@@ -22,10 +22,10 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import first, following
 from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import miss_rows, owners, rays, rooms, unasked
-from simmpp.engine.pe.admission import can_unpack
+from simmpp.engine.pe.bounds.admission import can_unpack
+from simmpp.engine.pe.bounds.rooms import has_ready
 from simmpp.engine.pe.misses import unfile
 from simmpp.engine.pe.ready import make_ready
-from simmpp.engine.pe.rooms import has_ready
 from simmpp.engine.pe.sending import send_escape
 
 ESCAPED = 2

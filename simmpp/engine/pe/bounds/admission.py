@@ -10,8 +10,8 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.records import NONE, UNPACK, Row, Run
 from simmpp.engine.arrays.views import copy_costs, messages, most_alive, pes, rays, rooms
+from simmpp.engine.pe.bounds.credits import MANY, hear_credit, owe
 from simmpp.engine.pe.costs import copy_ps
-from simmpp.engine.pe.credits import MANY, hear_credit, owe
 from simmpp.engine.pe.ready import make_ready
 from simmpp.engine.pe.sending import forget, parts_ps
 from simmpp.engine.record.counters import note_load, note_work
