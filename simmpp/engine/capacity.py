@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
-from simmpp.common.units import format_bytes, shown
+from simmpp.common.units import counted, format_bytes, shown, write_bytes
 from simmpp.engine.residency import resident_bytes
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -102,24 +102,38 @@ def capacity_bytes(bounds: Capacity, needs: Needs) -> int:
 def require_room(
     workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
 ) -> None:
-    """Raise ConfigError for a capacity in which a policy can't run, with the least that would do.
+    """Raise ConfigError if a policy can't run in the capacity, with the least that would do."""
+    bounds, nb = placement.capacity, machine.processors
+    if bounds is None:
+        return
+    if policy.rules.asks and not policy.merge_requests:
+        raise ConfigError("memory.capacity: expected merge_requests: true beside it")
+    if not does_not_fit(workload, machine, placement, policy):
+        return
+    needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
+    given = capacity_bytes(bounds, needs)
+    problem = f"value {shown(write_bytes(given))}"
+    if nb * given < scene:
+        problem += f", which is less on {counted(nb, 'PE')} than the scene's {format_bytes(scene)}"
+    least = f"expected at least {write_bytes(needs.least_bytes)} for {policy.title}"
+    raise ConfigError(f"memory.capacity: {problem}: {least}")
 
-    With ``flow: none`` any will do: it is only compared with.
+
+def does_not_fit(
+    workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
+) -> bool:
+    """Is the capacity too small for a policy to run in?
+
+    With ``flow: none`` it is only compared with what is held, but all PEs together have to hold the
+    scene.
     """
     bounds = placement.capacity
     if bounds is None:
-        return
-    if not policy.merge_requests and policy.rules.asks:
-        raise ConfigError("memory.capacity: expected merge_requests: true beside it")
-    if not bounds.has_credits:
-        return
-    needs = needs_of(workload, machine, placement, policy)
+        return False
+    needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
     given = capacity_bytes(bounds, needs)
-    if given < needs.least_bytes:
-        raise ConfigError(
-            f"memory.capacity: value {shown(format_bytes(given))}: expected at least "
-            f"{needs.least_bytes} B per PE for {policy.title} on {machine.processors} PEs"
-        )
+    too_small = bounds.has_credits and given < needs.least_bytes
+    return too_small or machine.processors * given < scene
 
 
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:

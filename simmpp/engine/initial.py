@@ -19,6 +19,7 @@ from simmpp.engine.arrays.records import (
     PIGGYBACK,
     SAMPLED,
 )
+from simmpp.engine.bounds import room_arrays
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -29,7 +30,6 @@ from simmpp.engine.residency import (
     resident_bytes,
     row_bytes,
 )
-from simmpp.engine.room_arrays import room_arrays
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine

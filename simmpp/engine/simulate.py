@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from simmpp.common.errors import ModelError
 from simmpp.common.validate import require_kind, require_word
+from simmpp.engine.bounds import memory_use
 from simmpp.engine.capacity import require_room
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.hook_errors import told_of_hooks
 from simmpp.engine.initial import new_state
-from simmpp.engine.memory_use import memory_use
 from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
