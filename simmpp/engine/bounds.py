@@ -33,7 +33,7 @@ def room_arrays(
     if not bounds.has_credits:
         return {"rooms": rooms, "most_alive": np.zeros(0, np.int32)}
     parts = split(needs, bounds, capacity_bytes(bounds, needs))
-    ray_bytes, share = machine.ray_bytes, parts.receive // max(1, nb - 1)
+    ray_bytes, share = machine.ray_bytes, parts.receive // max(1, placement.island - 1)
     rooms["queue_rays"] = parts.queue // ray_bytes if ray_bytes else MANY
     rooms["share"] = share
     fitting = (share - machine.header_bytes) // ray_bytes if ray_bytes else MANY

@@ -79,7 +79,7 @@ def needs_of(
     rules, nb, bounds = policy.rules, placement.processors, placement.capacity
     resident = resident_bytes(workload, placement, rules.all_resident)
     largest = _largest_lacking(workload, placement, rules.all_resident)
-    lacks, others = bool((largest >= 0).any()), nb - 1
+    lacks, others = bool((largest >= 0).any()), placement.island - 1
     escapes = bounds is not None and bounds.has_escape
     can_ask = lacks and (rules.asks or escapes)
     header_bytes, ray_bytes = machine.header_bytes, machine.ray_bytes
@@ -103,7 +103,7 @@ def require_room(
     workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
 ) -> None:
     """Raise ConfigError if a policy can't run in the capacity, with the least that would do."""
-    bounds, nb = placement.capacity, machine.processors
+    bounds, nb = placement.capacity, placement.island
     if bounds is None:
         return
     if policy.rules.asks and not policy.merge_requests:
@@ -124,8 +124,8 @@ def does_not_fit(
 ) -> bool:
     """Is the capacity too small for a policy to run in?
 
-    With ``flow: none`` it is only compared with what is held, but all PEs together have to hold the
-    scene.
+    With ``flow: none`` it is only compared with what is held, but all PEs of an island together have
+    to hold the scene.
     """
     bounds = placement.capacity
     if bounds is None:
@@ -133,7 +133,7 @@ def does_not_fit(
     needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
     given = capacity_bytes(bounds, needs)
     too_small = bounds.has_credits and given < needs.least_bytes
-    return too_small or machine.processors * given < scene
+    return too_small or placement.island * given < scene
 
 
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:
@@ -182,6 +182,7 @@ def _largest_lacking(workload: Workload, placement: Placement, everything: bool)
             np.argsort(-workload.object_bytes, kind="stable"),
             workload.object_bytes,
             placement.owners,
+            placement.island,
             placement.replica_offsets,
             placement.replica_objects,
             np.full(workload.n_objects, -1, np.int32),
@@ -195,6 +196,7 @@ def _find_lacking(
     largest_first: Ints,
     object_bytes: Ints,
     owners: NDArray[np.int32],
+    island: int,
     replica_offsets: Ints,
     replica_objects: NDArray[np.int32],
     last_holder: NDArray[np.int32],
@@ -205,6 +207,6 @@ def _find_lacking(
         for at in range(replica_offsets[pe], replica_offsets[pe + 1]):
             last_holder[replica_objects[at]] = pe
         for obj in largest_first:
-            if owners[obj] != pe and last_holder[obj] != pe:
+            if owners[obj] != pe % island and last_holder[obj] != pe:
                 largest[pe] = object_bytes[obj]
                 break

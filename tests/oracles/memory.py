@@ -62,6 +62,7 @@ class Bounded(World):
         self.bounds = self.placement.capacity
         self.alive = self.workload.n_primaries
         self.credits = self.bounds is not None and self.bounds.has_credits
+        self.island = self.placement.island
         self.has_escape = self.bounds is not None and self.bounds.has_escape
         self.children = [
             [c for c, parent in enumerate(self.workload.parents) if parent == ray]
@@ -79,8 +80,7 @@ class Bounded(World):
             self.parts = self.split()
             for pe in self.pes:
                 pe.pixels, pe.ready = pe.ready, []
-                pe.credit = Counter({q: self.parts[q].share for q in range(self.nb)})
-                pe.credit[pe.number] = 0
+                pe.credit = Counter({q: self.parts[q].share for q in self.others(pe)})
         for pe in self.pes:
             self.note_memory(pe)
 
@@ -101,13 +101,13 @@ class Bounded(World):
         own = sum(self.object_bytes[o] for o in pe.resident)
         sizes = [self.object_bytes[o] for o in lacking[pe.number]]
         escape = max(sizes, default=0) if can_ask and escapes else 0
-        return Parts(0, own, (self.nb - 1) * request if can_ask else 0, escape)
+        return Parts(0, own, (self.island - 1) * request if can_ask else 0, escape)
 
     def least_receive(self) -> int:
         """A ray, with a header, of each other PE, if any is sent."""
         anything = any(set(range(len(self.owners))) - each.resident for each in self.pes)
         each = self.machine.header_bytes + self.machine.ray_bytes
-        return (self.nb - 1) * each if anything and self.rules.send else 0
+        return (self.island - 1) * each if anything and self.rules.send else 0
 
     def least(self) -> int:
         """The least capacity."""
@@ -132,7 +132,7 @@ class Bounded(World):
             if anything and self.rules.ask:
                 parts.fetch = min(wished(self.bounds.fetch, rest), beside - parts.receive)
             parts.queue = rest - parts.receive - parts.fetch
-            parts.share = parts.receive // (self.nb - 1) if self.nb > 1 else 0
+            parts.share = parts.receive // max(1, self.island - 1)
             result.append(parts)
         return result
 
@@ -203,12 +203,10 @@ class Bounded(World):
             for lying in pe.shares:
                 under_way[lying.source, pe.number] += header + len(lying.rays) * each
         for sender in self.pes:
-            for receiver in self.pes:
-                if sender is not receiver:
-                    pair = sender.number, receiver.number
-                    owed = receiver.owed[sender.number]
-                    total = sender.credit[receiver.number] + under_way[pair] + owed
-                    assert total == self.parts[receiver.number].share, pair
+            for other in self.others(sender):
+                pair, owed = (sender.number, other), self.pes[other].owed[sender.number]
+                total = sender.credit[other] + under_way[pair] + owed
+                assert total == self.parts[other].share, pair
 
     # --- rays ---
 
@@ -315,8 +313,10 @@ class Bounded(World):
         ]
 
     def others(self, pe: PE) -> list[int]:
-        """All other PEs, beginning with the next one."""
-        return [(pe.number + step) % self.nb for step in range(1, self.nb)]
+        """All other PEs of the island, beginning with the next one."""
+        island = self.island_of(pe.number)
+        at = island.index(pe.number)
+        return island[at + 1 :] + island[:at]
 
     # --- objects ---
 
