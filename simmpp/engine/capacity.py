@@ -124,8 +124,8 @@ def does_not_fit(
 ) -> bool:
     """Is the capacity too small for a policy to run in?
 
-    With ``flow: none`` it is only compared with what is held, but all PEs of an island together have
-    to hold the scene.
+    With ``flow: none`` it is only compared with what is held, but all PEs of an island together
+    have to hold the scene.
     """
     bounds = placement.capacity
     if bounds is None:
