@@ -149,10 +149,11 @@ class Memory:
 
     @model_validator(mode="after")
     def _leaves_room_for_rays(self) -> Memory:
-        wishes = [wish for wish in (self.buffers, self.fetch) if isinstance(wish, Fraction)]
-        if sum(wishes) >= 1:
-            both = f"buffers {float(self.buffers):.0%} and fetch {float(self.fetch):.0%}"
-            raise mistake(f"{both} leave no room for rays: expected less than 100% together")
+        wishes = {"buffers": self.buffers, "fetch": self.fetch}
+        shares = {key: wish for key, wish in wishes.items() if isinstance(wish, Fraction)}
+        if sum(shares.values()) >= 1:
+            said = " and ".join(f"{key} {float(wish):.0%}" for key, wish in shares.items())
+            raise mistake(f"{said} leave no room for rays: expected less than 100% together")
         return self
 
     @property
