@@ -6,55 +6,44 @@ import numpy as np
 
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.records import FOR_CREDIT, NONE, ROOM
-from simmpp.engine.capacity import capacity_bytes, most_alive, needs_of, split
+from simmpp.engine.capacity import Needs, capacity_bytes, split
 from simmpp.engine.memory_use import MemoryUse
 from simmpp.engine.residency import Arrays
 from simmpp.engine.state import State
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD
 from simmpp.placement.placement import Placement
-from simmpp.policy.parameters import PolicyParameters
-from simmpp.workload.workload import Workload
+from simmpp.placement.rooms import Capacity
 
 MANY = 1 << 62
 """Rays without size: there is room for all."""
 
 
-def room_arrays(
-    workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
-) -> Arrays:
+def room_arrays(placement: Placement, machine: Machine, needs: Needs | None) -> Arrays:
     """The arrays ``rooms`` and ``most_alive`` of a run; empty without a capacity."""
-    bounds, nb = placement.capacity, placement.processors
-    if bounds is None:
+    bounds, nb, ray_bytes = placement.capacity, placement.processors, machine.ray_bytes
+    if bounds is None or needs is None:
         return {"rooms": np.zeros(0, ROOM), "most_alive": np.zeros(0, np.int32)}
-    needs, rooms = needs_of(workload, machine, placement, policy), np.zeros(nb, ROOM)
+    rooms = np.zeros(nb, ROOM)
     rooms["resident"], rooms["peak"] = needs.resident, needs.resident
-    rooms["first"] = rooms["stuck"] = rooms["since_ps"] = NONE
+    rooms["first"] = rooms["stuck"] = NONE
     if not bounds.has_credits:
         return {"rooms": rooms, "most_alive": np.zeros(0, np.int32)}
     parts = split(needs, bounds, capacity_bytes(bounds, needs))
-    ray_bytes, share = machine.ray_bytes, parts.receive // max(1, placement.island - 1)
     rooms["queue_rays"] = parts.queue // ray_bytes if ray_bytes else MANY
-    rooms["share"] = share
+    rooms["share"] = share = parts.receive // max(1, placement.island - 1)
     fitting = (share - machine.header_bytes) // ray_bytes if ray_bytes else MANY
     rooms["share_rays"] = np.maximum(1, fitting)
     rooms["fetch_bytes"] = parts.fetch
-    return {"rooms": rooms, "most_alive": most_alive(workload)}
+    return {"rooms": rooms, "most_alive": needs.most_alive}
 
 
-def memory_use(
-    state: State,
-    workload: Workload,
-    machine: Machine,
-    placement: Placement,
-    policy: PolicyParameters,
-) -> MemoryUse | None:
+def memory_use(state: State, bounds: Capacity | None, needs: Needs | None) -> MemoryUse | None:
     """What became of the memory in a run that is over; None without a capacity."""
-    bounds, rooms = placement.capacity, state.arrays["rooms"]
-    if bounds is None:
+    if bounds is None or needs is None:
         return None
-    needs, fullest = needs_of(workload, machine, placement, policy), rooms[rooms["peak"].argmax()]
-    capacity = capacity_bytes(bounds, needs)
+    rooms = state.arrays["rooms"]
+    fullest, capacity = rooms[rooms["peak"].argmax()], capacity_bytes(bounds, needs)
     held = 0 if bounds.has_credits else int((rooms["peak"] + needs.control).max())
     sends_ps, receives_ps, asks_ps = _stalled_ps(state)
     return MemoryUse(
@@ -78,8 +67,8 @@ def memory_use(
 def _stalled_ps(state: State) -> tuple[int, int, int]:
     """Times over all PEs; what is still refused ends with the run."""
     rooms, end_ps = state.arrays["rooms"], state["last_ray_ps"]
-    since = rooms["since_ps"]
-    lasting = np.where(since == NONE, 0, np.maximum(end_ps - since, 0))
+    is_stalled = rooms["stalled"][:, None] >> np.arange(3) & 1
+    lasting = is_stalled * np.maximum(end_ps - rooms["since_ps"], 0)
     sends_ps, receives_ps, asks_ps = (rooms["stalled_ps"] + lasting).sum(axis=0).tolist()
     return sends_ps, receives_ps, asks_ps
 

@@ -24,7 +24,7 @@ from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted, format_bytes, shown, write_bytes
 from simmpp.engine.residency import resident_bytes
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import POLLED, Machine
 from simmpp.placement.placement import Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room
 from simmpp.policy.parameters import PolicyParameters
@@ -51,6 +51,8 @@ class Needs:
     """Rays are sent."""
     asks: bool
     """Objects are asked for, other than to escape."""
+    most_alive: NDArray[np.int32]
+    """(n,) int32: the most rays that can be alive at once of a ray and all that it brings forth."""
 
     @property
     def permanent(self) -> Ints:
@@ -82,15 +84,16 @@ def needs_of(
     lacks, others = bool((largest >= 0).any()), placement.island - 1
     escapes = bounds is not None and bounds.has_escape
     can_ask = lacks and (rules.asks or escapes)
-    header_bytes, ray_bytes = machine.header_bytes, machine.ray_bytes
+    header_bytes, ray_bytes, alive = machine.header_bytes, machine.ray_bytes, most_alive(workload)
     return Needs(
         resident=resident,
         escape=np.maximum(largest, 0) if lacks and escapes else np.zeros(nb, np.int64),
         control=others * (header_bytes + machine.request_bytes) if can_ask else 0,
-        tree=ray_bytes * int(most_alive(workload)[: workload.n_primaries].max(initial=0)),
+        tree=ray_bytes * int(alive[: workload.n_primaries].max(initial=0)),
         receive=others * (header_bytes + ray_bytes) if lacks and rules.sends else 0,
         sends=lacks and rules.sends,
         asks=lacks and rules.asks,
+        most_alive=alive,
     )
 
 
@@ -101,16 +104,21 @@ def capacity_bytes(bounds: Capacity, needs: Needs) -> int:
 
 def require_room(
     workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
-) -> None:
-    """Raise ConfigError if a policy can't run in the capacity, with the least that would do."""
+) -> Needs | None:
+    """What a policy needs, or None where memory has no end.
+
+    Raises ConfigError if it can't run in the capacity, with the least that would do.
+    """
     bounds, nb = placement.capacity, placement.island
     if bounds is None:
-        return
+        return None
     if policy.rules.asks and not policy.merge_requests:
         raise ConfigError("memory.capacity: expected merge_requests: true beside it")
-    if not does_not_fit(workload, machine, placement, policy):
-        return
+    if machine.service != POLLED:
+        raise ConfigError(f"memory.capacity: expected machine.service {POLLED} beside it")
     needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
+    if fits(needs, placement, scene):
+        return needs
     given = capacity_bytes(bounds, needs)
     problem = f"value {shown(write_bytes(given))}"
     if nb * given < scene:
@@ -119,21 +127,18 @@ def require_room(
     raise ConfigError(f"memory.capacity: {problem}: {least}")
 
 
-def does_not_fit(
-    workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
-) -> bool:
-    """Is the capacity too small for a policy to run in?
+def fits(needs: Needs, placement: Placement, scene_bytes: int) -> bool:
+    """Is the capacity enough for a policy to run in?
 
     With ``flow: none`` it is only compared with what is held, but all PEs of an island together
     have to hold the scene.
     """
     bounds = placement.capacity
     if bounds is None:
-        return False
-    needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
+        return True
     given = capacity_bytes(bounds, needs)
-    too_small = bounds.has_credits and given < needs.least_bytes
-    return too_small or placement.island * given < scene
+    is_enough = not bounds.has_credits or given >= needs.least_bytes
+    return is_enough and placement.island * given >= scene_bytes
 
 
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:
@@ -155,7 +160,7 @@ def _wish(wish: Fraction | Room, rest: int) -> int:
 
 
 def most_alive(workload: Workload) -> NDArray[np.int32]:
-    """(n,) int32: the most rays that can be alive at once of a ray and all that it brings forth.
+    """How many of a ray's tree can be alive at once, for each.
 
     A ray that waits lets others run on, so all leaves of its tree may be there at the same time.
     """

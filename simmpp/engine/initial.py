@@ -18,8 +18,10 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
 )
 from simmpp.engine.bounds import room_arrays
+from simmpp.engine.capacity import Needs
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -33,7 +35,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import USER_COPIED_AS
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
@@ -55,6 +57,7 @@ def new_state(
     placement: Placement,
     parameters: PolicyParameters,
     *,
+    needs: Needs | None = None,
     ready_order: str,
     seed: int = 0,
     recording: Recording = NOTHING,
@@ -66,7 +69,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays |= room_arrays(workload, machine, placement, parameters)
+    arrays |= room_arrays(placement, machine, needs)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
     arrays["policy_views"] = views = _policy_views(workload, placement, parameters)
@@ -104,7 +107,8 @@ def _sizes(
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
+    known = nb * placement.island
+    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -131,7 +135,7 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    pack, unpack = copies(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -182,6 +186,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "measures": bounds is not None,
         "bounded": bounds is not None and bounds.has_credits,
         "escapes": bounds is not None and bounds.has_escape,
@@ -240,7 +245,7 @@ def _deal(state: State, placement: Placement) -> None:
     """Give primary rays to the PEs of their pixels, in pixel order."""
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
-    pes["first"] = NONE
+    pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends

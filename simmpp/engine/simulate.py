@@ -64,12 +64,13 @@ def simulate(
     require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
-    require_room(workload, machine, placement, policy)
+    needs = require_room(workload, machine, placement, policy)
     state = new_state(
         workload,
         machine,
         placement,
         policy,
+        needs=needs,
         ready_order=ready_order,
         seed=seed,
         recording=recording,
@@ -87,7 +88,7 @@ def simulate(
         raise beyond_the_clock() from None
     state.close_log()
     rows = collector.rows() if record.log is True else None
-    use = memory_use(state, workload, machine, placement, policy)
+    use = memory_use(state, placement.capacity, needs)
     return concluded(state, run.arrivals, policy.title, engine, rows, use)
 
 

@@ -18,9 +18,11 @@ BOUNDED = "bounded"
 BY_USE = {
     "packs": result.PACKED_COLUMNS,
     "talks": result.USER_COLUMNS,
+    "threads": result.SERVICE_COLUMNS,
     BOUNDED: memory_use.COLUMNS,
 }
-"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``)."""
+"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
+``Machine.uses``)."""
 FURTHER = tuple(name for names in BY_USE.values() for name in names)
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 

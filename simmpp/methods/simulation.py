@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.engine.capacity import does_not_fit
+from simmpp.engine.capacity import fits, needs_of
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
@@ -14,8 +14,10 @@ from simmpp.methods.columns import BOUNDED, BY_USE, FURTHER, NUMBERS
 def simulation(case: Case) -> dict[str, int]:
     """All integers of a run; of a policy that does not fit into the capacity no more than that."""
     placement = case.place()
-    if does_not_fit(case.workload, case.machine, placement, case.policy):
-        return {"fits": 0}
+    if placement.capacity is not None:
+        needs = needs_of(case.workload, case.machine, placement, case.policy)
+        if not fits(needs, placement, int(case.workload.object_bytes.sum())):
+            return {"fits": 0}
     result = simulate(
         case.workload,
         case.machine,

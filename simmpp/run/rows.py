@@ -66,7 +66,7 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
-    uses = {use for run in runs for use in run.parameters.uses}
+    uses = {use for run in runs for use in run.parameters.uses} | {*point.machine.uses}
     if point.config.memory.capacity is not None:
         uses.add(BOUNDED)
     columns = result_columns(uses=uses)

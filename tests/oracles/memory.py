@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from oracles.costs import copy_ps, transfer_ps
+from oracles.costs import transfer_ps, unpacking
 from oracles.state import PE, Lying, Message
 from oracles.world import World
 from simmpp.machine.messages import RAYS, REQUEST
@@ -283,17 +283,16 @@ class Bounded(World):
         """Rays go to a PE: the credit for them, and for a header, is used."""
         pe.credit[other] -= self.machine.header_bytes + n * self.machine.ray_bytes
 
-    def unpacking_ps(self, pe: PE, message: Message) -> int:
-        """Cost of unpacking a message; with credits, of those rays that are taken in now."""
+    def unpacking(self, pe: PE, message: Message) -> int:
+        """What a message costs who receives it; with credits, of the rays that are taken in now."""
+        cost = super().unpacking(pe, message)
         pe.credit[message.source] += message.credit
-        cost, copies = 0, (*self.machine.unpack, self.machine.unpack[REQUEST])
         for part in message.parts:
             if part.kind == RAYS and self.credits:
                 pe.shares.append(Lying(message.source, list(part.rays)))
                 n_bytes = len(self.admit(pe)) * self.machine.ray_bytes
-                cost += copy_ps(copies[RAYS], n_bytes)
-            else:
-                cost += copy_ps(copies[part.kind], part.payload_bytes)
+                cost += unpacking(self.machine, RAYS, n_bytes)
+                cost -= unpacking(self.machine, RAYS, part.payload_bytes)
         return cost
 
     def enough_for(self, pe: PE, other: int, batch: int) -> int:

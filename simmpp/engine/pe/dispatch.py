@@ -30,7 +30,6 @@ from simmpp.engine.arrays.views import (
     peer_rows,
     pes,
     rays,
-    rooms,
     sendable,
     sort_items,
     sort_keys,
@@ -40,17 +39,13 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.bounds.admission import can_unpack
 from simmpp.engine.pe.bounds.credits import enough_for, rays_allowed, spend
 from simmpp.engine.pe.bounds.escape import escape
-from simmpp.engine.pe.bounds.rooms import ASKS, SENDS, has_ready, note_stalls, release_rays
+from simmpp.engine.pe.bounds.rooms import ASKS, SENDS, has_ready, note_stalls, refuse, release_rays
 from simmpp.engine.pe.candidates import withdraw
 from simmpp.engine.pe.fetched import reserve_object
 from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import is_holder, set_unasked, unfile
 from simmpp.engine.pe.peers import known_load
-from simmpp.engine.pe.sending import (
-    send_made_up,
-    send_rays,
-    send_request,
-)
+from simmpp.engine.pe.sending import send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.pe.telling import collect_peers, refresh_loads, return_credits
 from simmpp.engine.record.counters import note_work
@@ -190,7 +185,7 @@ def _pay_for_rays(s: Run, me: int, peer_row: int, head: int, n: int, enough: int
     if n > 0:
         spend(s, peer_row, n)
     if n < enough and peer_rows(s)[peer_row].sendable > 0:
-        rooms(s)[me].refused[SENDS] = 1
+        refuse(s, me, SENDS)
 
 
 @kernel
@@ -203,7 +198,7 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
         answer = consult(s.ask, view)
         if answer > 0:
             if s.measures and not reserve_object(s, me, miss_row):
-                rooms(s)[me].refused[ASKS] = 1
+                refuse(s, me, ASKS)
                 continue
             miss = miss_rows(s)[miss_row]
             obj = miss.key % s.n_objects

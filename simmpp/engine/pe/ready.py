@@ -96,5 +96,5 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     s.last_ray_ps = max(s.last_ray_ps, now_ps)
     if s.bounded and child == end:
         rooms(s)[me].reserved -= 1  # else its children have its room
-    if s.measures:
+    elif s.measures and not s.bounded:
         note_memory(s, me)

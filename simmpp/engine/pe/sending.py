@@ -11,8 +11,8 @@ from __future__ import annotations
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import give_back, sort_by_key, take
 from simmpp.engine.arrays.records import (
-    FOR_CREDIT,
-    FOR_ESCAPE,
+    BY_NIC,
+    ITS_LOAD,
     NONE,
     ORDINARY,
     PACK,
@@ -22,16 +22,13 @@ from simmpp.engine.arrays.records import (
     Run,
 )
 from simmpp.engine.arrays.views import (
-    copy_costs,
     made_up,
     message_marks,
     messages,
     object_bytes,
     outbox,
     parts_by_kind,
-    peer_rows,
     pes,
-    rooms,
     sent_by_kind,
     sort_items,
     sort_keys,
@@ -39,8 +36,8 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.bounds.credits import take_owed
-from simmpp.engine.pe.costs import copy_ps, sending_ps
-from simmpp.engine.pe.peers import note_exchange, peer_of
+from simmpp.engine.pe.costs import parts_ps, sending_ps
+from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
@@ -48,80 +45,65 @@ from simmpp.policy.view import View
 
 
 @kernel
-def parts_ps(s: Run, message: int, which: int) -> int:
-    """Packing (``which`` is PACK) or unpacking (UNPACK) of all parts of a message."""
-    m = messages(s)[message]
-    cost_ps = copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    while m.part != NONE:
-        m = messages(s)[m.part]
-        cost_ps += copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    return cost_ps
-
-
-@kernel
 def send_request(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
     """Ask a PE that has an object for it."""
-    row = _new_part(s, REQUEST, other, s.request_bytes)
+    row = new_part(s, REQUEST, other, s.request_bytes)
     messages(s)[row].obj = obj
-    return _post(s, me, row, now_ps)
-
-
-@kernel
-def send_escape(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
-    """Ask the owner for an object that comes into the escape room."""
-    row = _new_part(s, REQUEST, other, s.request_bytes)
-    messages(s)[row].obj, messages(s)[row].purpose = obj, FOR_ESCAPE
-    return _post(s, me, row, now_ps)
-
-
-@kernel
-def send_credit(s: Run, me: int, other: int, now_ps: int) -> int:
-    """Tell another PE how much of its share is free, which is in every header, too."""
-    row = _new_part(s, LOAD, other, 0)
-    messages(s)[row].purpose = FOR_CREDIT
-    rooms(s)[me].credit_messages += 1
-    return _send(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
 def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
-    row = _new_part(s, RAYS, other, n * s.ray_bytes)
+    row = new_part(s, RAYS, other, n * s.ray_bytes)
     m = messages(s)[row]
     m.first, m.last, m.n = first, last, n
-    return _post(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
 def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
-    """Tell another PE the load, which is in every header: there is nothing else in this message."""
-    return _send(s, me, _new_part(s, LOAD, other, 0), now_ps)
+    """Tell another PE the load, which is in every header: there is nothing else in this message.
+
+    With nic get the other's load.
+    """
+    row = new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
+    if s.service == BY_NIC:
+        messages(s)[row].obj = ITS_LOAD
+    return send(s, me, row, now_ps)
 
 
 @kernel
 def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
     """Send a message of the policy's own: the words that it has left in its view."""
-    row = _new_part(s, USER, other, USER_WORDS * WORD_BYTES)
+    row = new_part(s, USER, other, USER_WORDS * WORD_BYTES)
     for i in range(USER_WORDS):
         user_words(s)[USER_WORDS * row + i] = view.words[i]
-    return _send(s, me, row, now_ps)
+    return send(s, me, row, now_ps)
 
 
 @kernel
 def answer(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Send what a message asks for, all in one message, to who sent it."""
+    """Send what a message asks for; returns the moment when that has been packed."""
+    row = answer_to(s, message)
+    return send(s, me, row, now_ps) if row != NONE else now_ps
+
+
+@kernel
+def answer_to(s: Run, message: int) -> int:
+    """Make up what a message asks for, all in one message, to who sent it; NONE: nothing."""
     answering, part = NONE, message
     while part != NONE:
         m = messages(s)[part]
         if m.kind == REQUEST:
-            row = _new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
+            row = new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
             messages(s)[row].obj, messages(s)[row].purpose = m.obj, m.purpose
             if answering == NONE:
                 answering = row
             else:
                 _append(s, answering, row)
         part = m.part
-    return _send(s, me, answering, now_ps) if answering != NONE else now_ps
+    return answering
 
 
 @kernel
@@ -137,7 +119,7 @@ def forget(s: Run, message: int) -> None:
 
 
 @kernel
-def _new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+def new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
     """A message of one part, which may become a part of another one."""
     row = take(messages(s), message_marks(s))
     m = messages(s)[row]
@@ -160,12 +142,16 @@ def _append(s: Run, message: int, part: int) -> None:
 
 
 @kernel
-def _post(s: Run, me: int, row: int, now_ps: int) -> int:
+def post(s: Run, me: int, row: int, now_ps: int) -> int:
     """Send what a dispatch has decided on, or put it to what else goes to that PE."""
     if s.packing == SINGLY:
-        return _send(s, me, row, now_ps)
-    place = _place(s, me, messages(s)[row])
-    if made_up(s)[place] > 0:
+        return send(s, me, row, now_ps)
+    m = messages(s)[row]
+    place = _place(s, me, m)
+    if _is_get(s, m):
+        outbox(s)[s.n_sent] = row
+        s.n_sent += 1
+    elif made_up(s)[place] > 0:
         _append(s, made_up(s)[place] - 1, row)
     else:
         made_up(s)[place] = row + 1
@@ -175,10 +161,15 @@ def _post(s: Run, me: int, row: int, now_ps: int) -> int:
 
 
 @kernel
+def _is_get(s: Run, m: Row) -> bool:
+    return s.service == BY_NIC and m.kind == REQUEST
+
+
+@kernel
 def _place(s: Run, me: int, m: Row) -> int:
     """Where ``made_up`` has the message that a part goes into; messages depart in this order."""
     distance = (m.destination - me) % s.processors
-    alone = s.packing == REQUESTS_TOGETHER and m.kind == REQUEST
+    alone = m.kind == REQUEST and (s.packing == REQUESTS_TOGETHER or s.service == BY_NIC)
     return distance + s.processors if alone else distance
 
 
@@ -190,41 +181,57 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
         row = outbox(s)[i]
         place = _place(s, me, messages(s)[row])
         made_up(s)[place] = 0
-        sort_keys(s)[i], sort_items(s)[i] = place, row
+        # Gets of objects of one PE have one place: those that were decided on first come first.
+        sort_keys(s)[i], sort_items(s)[i] = (place << 32) + i, row
     sort_by_key(sort_keys(s), sort_items(s), n)
     s.n_sent = 0
     clock_ps = now_ps
     for i in range(n):
-        clock_ps = _send(s, me, sort_items(s)[i], clock_ps)
+        clock_ps = send(s, me, sort_items(s)[i], clock_ps)
     return clock_ps
 
 
 @kernel
-def _send(s: Run, me: int, row: int, now_ps: int) -> int:
+def send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
-    pe, m = pes(s)[me], messages(s)[row]
-    m.source, m.load, m.number = me, pe.load, pe.messages_sent
-    m.depart_ps = now_ps + sending_ps(s, me, m.destination, m.kind) + parts_ps(s, row, PACK)
-    depart(s, m)
-    if s.bounded:
-        m.credit = take_owed(s, me, m.destination)
-    pe.messages_sent += 1
-    sent_by_kind(s)[m.kind] += 1
-    s.bytes_sent += m.payload_bytes + s.header_bytes
-    if s.packing != SINGLY:
-        _count_parts(s, row)
-    if s.refresh_ps != NONE:
-        peer_row = peer_of(s, me, m.destination)
-        peer_rows(s)[peer_row].sent_ps = m.depart_ps
-        if m.kind in (OBJECT, RAYS):
-            note_exchange(s, me, peer_row)
+    m = messages(s)[row]
+    m.load = pes(s)[me].load
+    sent_ps = pack(s, me, row, now_ps)
     if s.logs:
         note_send(s, me, row, now_ps)
     if s.record_counters:
         note_departure(s, m)
+    return sent_ps
+
+
+@kernel
+def pack(s: Run, me: int, row: int, now_ps: int) -> int:
+    """Pack a message of a PE, or of its thread, that has the load in it already."""
+    m = messages(s)[row]
+    m.source = me
+    startup_ps = sending_ps(s, me, m.destination, m.kind)
+    m.depart_ps = now_ps + startup_ps + parts_ps(s, row, PACK)
+    set_off(s, m)
+    if s.bounded:
+        m.credit = take_owed(s, me, m.destination)
+    if s.packing != SINGLY:
+        _count_parts(s, row)
+    if s.refresh_ps != NONE:
+        note_departure_to(s, me, m)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return m.depart_ps
+
+
+@kernel
+def set_off(s: Run, m: Row) -> None:
+    """A message departs: it is numbered and counted."""
+    pe = pes(s)[m.source]
+    m.number = pe.messages_sent
+    depart(s, m)
+    pe.messages_sent += 1
+    sent_by_kind(s)[m.kind] += 1
+    s.bytes_sent += m.payload_bytes + s.header_bytes
 
 
 @kernel

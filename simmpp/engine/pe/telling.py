@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key
-from simmpp.engine.arrays.records import Run
-from simmpp.engine.arrays.views import due, exchanged, peer_rows, sort_items, sort_keys
-from simmpp.engine.pe.sending import send_credit, send_load
+from simmpp.engine.arrays.records import FOR_CREDIT, Run
+from simmpp.engine.arrays.views import (
+    due,
+    exchanged,
+    messages,
+    peer_rows,
+    rooms,
+    sort_items,
+    sort_keys,
+)
+from simmpp.engine.pe.peers import silence_ps
+from simmpp.engine.pe.sending import new_part, send, send_load
+from simmpp.machine.messages import LOAD
 
 
 @kernel
@@ -29,7 +39,10 @@ def return_credits(s: Run, me: int, now_ps: int) -> int:
     clock_ps = now_ps
     for i in range(collect_peers(s, me, due(s), me, 0)):
         other = peer_rows(s)[sort_items(s)[i]].key % s.processors
-        clock_ps = send_credit(s, me, other, clock_ps)
+        row = new_part(s, LOAD, other, 0)
+        messages(s)[row].purpose = FOR_CREDIT
+        rooms(s)[me].credit_messages += 1
+        clock_ps = send(s, me, row, clock_ps)
     return clock_ps
 
 
@@ -37,11 +50,14 @@ def return_credits(s: Run, me: int, now_ps: int) -> int:
 def refresh_loads(s: Run, me: int, now_ps: int) -> int:
     """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
 
+    With nic: get the load of those of which nothing was heard for long.
+
     Not after the receipt of such a message, or loads would answer loads for ever.
     """
     clock_ps = now_ps
     for i in range(collect_peers(s, me, exchanged(s), me, 0)):
-        peer = peer_rows(s)[sort_items(s)[i]]
-        if clock_ps - peer.sent_ps >= s.refresh_ps:
-            clock_ps = send_load(s, me, peer.key % s.processors, clock_ps)
+        peer_row = sort_items(s)[i]
+        if silence_ps(s, peer_row, clock_ps) >= s.refresh_ps:
+            other = peer_rows(s)[peer_row].key % s.processors
+            clock_ps = send_load(s, me, other, clock_ps)
     return clock_ps

@@ -11,9 +11,9 @@ from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.records import NONE, UNPACK, Row, Run
 from simmpp.engine.arrays.views import copy_costs, messages, most_alive, pes, rays, rooms
 from simmpp.engine.pe.bounds.credits import MANY, hear_credit, owe
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, parts_ps
 from simmpp.engine.pe.ready import make_ready
-from simmpp.engine.pe.sending import forget, parts_ps
+from simmpp.engine.pe.sending import forget
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_unpack
 from simmpp.machine.messages import RAYS
@@ -57,7 +57,7 @@ def unpack(s: Run, me: int, now_ps: int) -> int:
 
 
 @kernel
-def unpacking_ps(s: Run, me: int, message: int) -> int:
+def taking_in_ps(s: Run, me: int, message: int) -> int:
     """Take in what has come and fits, older rays first; the cost of unpacking that.
 
     The fixed cost of a batch is paid now, its cost per byte when its rays are taken in.

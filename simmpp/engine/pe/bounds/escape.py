@@ -20,14 +20,15 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import first, following
-from simmpp.engine.arrays.records import NONE, Run
-from simmpp.engine.arrays.views import miss_rows, rays, rooms, unasked
+from simmpp.engine.arrays.records import FOR_ESCAPE, NONE, Run
+from simmpp.engine.arrays.views import messages, miss_rows, rays, rooms, unasked
 from simmpp.engine.pe.bounds.admission import can_unpack
 from simmpp.engine.pe.bounds.rooms import has_ready
 from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import unfile
 from simmpp.engine.pe.ready import make_ready
-from simmpp.engine.pe.sending import send_escape
+from simmpp.engine.pe.sending import new_part, post
+from simmpp.machine.messages import REQUEST
 
 ESCAPED = 2
 """RAY.granted of a ray whose object is in the escape room."""
@@ -49,7 +50,9 @@ def escape(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     room.stuck = miss_rows(s)[miss_row].first
     room.escapes += 1
     unfile(s, me, miss_row, 1)
-    return send_escape(s, me, owner_of(s, me, obj), obj, now_ps)
+    row = new_part(s, REQUEST, owner_of(s, me, obj), s.request_bytes)
+    messages(s)[row].obj, messages(s)[row].purpose = obj, FOR_ESCAPE
+    return post(s, me, row, now_ps)
 
 
 @kernel

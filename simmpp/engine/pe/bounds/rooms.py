@@ -12,7 +12,7 @@ from simmpp.engine.arrays.views import messages, most_alive, pes, pixels, rays, 
 from simmpp.machine.messages import RAYS, REQUEST
 
 SENDS, RECEIVES, ASKS = range(3)
-"""What credit or room may refuse: the words of ROOM.refused, since_ps, stalled_ps."""
+"""What credit or room may refuse: bits of ROOM.refused, numbers of ROOM.since_ps."""
 
 
 @kernel
@@ -85,15 +85,23 @@ def _control_bytes(s: Run, message: int) -> int:
 
 
 @kernel
+def refuse(s: Run, me: int, what: int) -> None:
+    """Credit or room refuses in this dispatch what a rule would do."""
+    rooms(s)[me].refused |= 1 << what
+
+
+@kernel
 def note_stalls(s: Run, me: int, now_ps: int) -> None:
     """A dispatch has begun then and is over: what was refused in it, and what is no longer."""
     room = rooms(s)[me]
     if room.first != NONE:
-        room.refused[RECEIVES] = 1
-    for what in range(3):
-        if room.refused[what] and room.since_ps[what] == NONE:
-            room.since_ps[what] = now_ps
-        elif not room.refused[what] and room.since_ps[what] != NONE:
-            room.stalled_ps[what] += now_ps - room.since_ps[what]
-            room.since_ps[what] = NONE
-        room.refused[what] = 0
+        room.refused |= 1 << RECEIVES
+    if room.refused != room.stalled:
+        for what in range(3):
+            is_refused, was_refused = room.refused >> what & 1, room.stalled >> what & 1
+            if is_refused and not was_refused:
+                room.since_ps[what] = now_ps
+            elif was_refused and not is_refused:
+                room.stalled_ps[what] += now_ps - room.since_ps[what]
+        room.stalled = room.refused
+    room.refused = 0
