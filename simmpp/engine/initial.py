@@ -18,6 +18,7 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
 )
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
@@ -32,7 +33,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import USER_COPIED_AS
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
@@ -129,7 +130,7 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    pack, unpack = copies(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -179,6 +180,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
@@ -234,7 +236,7 @@ def _deal(state: State, placement: Placement) -> None:
     """Give primary rays to the PEs of their pixels, in pixel order."""
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
-    pes["first"] = NONE
+    pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from oracles.costs import copy_ps
 from oracles.dispatch import Dispatch
-from oracles.network import distance, network_ps, startups_ps
+from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE, Message, Part
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST, USER
@@ -105,11 +105,17 @@ class Talking(Dispatch):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         view.objects = view.fetch_ps = view.fetch_flight_ps = 0
-        startups = machine.send_startup_ps, machine.receive_startup_ps
-        if other is not None:
-            startups = startups_ps(machine, pe.number, other)
-        view.send_ps = startups[0] + copy_ps(machine.pack[REQUEST], USER_BYTES)
-        view.receive_ps = startups[1] + copy_ps(machine.unpack[REQUEST], USER_BYTES)
+        if other is None:
+            send_ps = machine.send_startup_ps
+            nic = machine.service == "nic"
+            receipt_ps = machine.completion_ps if nic else machine.receive_startup_ps
+        else:
+            send_ps = sending(machine, pe.number, other, USER)
+            receipt_ps = receiving(machine, pe.number, other)
+        view.send_ps = send_ps + copy_ps(machine.pack[REQUEST], USER_BYTES)
+        receipt_ps += copy_ps(machine.unpack[REQUEST], USER_BYTES)
+        threads = machine.service == "thread"
+        view.receive_ps = machine.handoff_ps if threads else receipt_ps
         if other is None:
             view.other = view.known_load = -1
             view.age_ps, view.in_flight, view.hops, view.flight_ps = pe.clock, 0, 0, 0
@@ -117,4 +123,5 @@ class Talking(Dispatch):
         else:
             view.hops = distance(machine, pe.number, other)
             view.flight_ps = network_ps(machine, pe.number, other, USER_BYTES)
+            view.flight_ps += receipt_ps if threads else 0
         return view

@@ -9,10 +9,21 @@ at least WAKING_PS apart.
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import NONE, PACK, REST, SLEEP, UNPACK, WOKEN, Row, Run
+from simmpp.engine.arrays.records import (
+    BY_NIC,
+    BY_THREAD,
+    NONE,
+    PACK,
+    REST,
+    SLEEP,
+    UNPACK,
+    WOKEN,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import copy_costs, messages, pes, topology, user_words
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.costs import copy_ps, sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.peers import peer_of
 from simmpp.engine.pe.sending import send_user
 from simmpp.engine.pe.showing import show_load, show_nothing, show_self, view_of
@@ -130,14 +141,22 @@ def _show(s: Run, view: View, me: int, other: int, now_ps: int, reads: int) -> N
         if other != NONE:
             show_load(s, view, peer_of(s, me, other), now_ps)
     if reads & WAY:
-        n_bytes = USER_WORDS * WORD_BYTES
-        view.send_ps, view.receive_ps = s.send_startup_ps, s.receive_startup_ps  # to nobody yet
-        view.hops = view.flight_ps = 0
-        if other != NONE:
-            view.send_ps = sending_ps(s, me, other, USER)
-            view.receive_ps = receiving_ps(s, me, other, USER)
-            view.hops = hops(topology(s), me, other)
-            view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
-        view.send_ps += copy_ps(copy_costs(s)[PACK + USER], n_bytes)
-        view.receive_ps += copy_ps(copy_costs(s)[UNPACK + USER], n_bytes)
+        _show_way(s, view, me, other)
     show_self(s, view, me, now_ps, reads)
+
+
+@kernel
+def _show_way(s: Run, view: View, me: int, other: int) -> None:
+    """What words cost on their way to another PE; to nobody yet without the startups of a level."""
+    n_bytes = USER_WORDS * WORD_BYTES
+    if other == NONE:
+        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + USER], n_bytes)
+        receipt_ps = s.completion_ps if s.service == BY_NIC else s.receive_startup_ps
+        receipt_ps += copy_ps(copy_costs(s)[UNPACK + USER], n_bytes)
+        view.receive_ps = s.handoff_ps if s.service == BY_THREAD else receipt_ps
+        view.hops = view.flight_ps = 0
+        return
+    view.send_ps = sent_alone_ps(s, me, other, USER, n_bytes)
+    view.receive_ps, by_thread_ps = taken_in_ps(s, me, other, USER, n_bytes)
+    view.hops = hops(topology(s), me, other)
+    view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes) + by_thread_ps
