@@ -1,9 +1,9 @@
-"""Thrifty: a PE fetches only what many rays want, and sends the others to the owner of what they want.
+"""Thrifty: a PE fetches only what many rays want, and sends the others to its owner.
 
-Concurrent dataflow sends to the less loaded. This one also sends, whatever the loads, where fetching
-would not pay: a fetch takes four startups and brings a ray one test, while a message of rays takes two
-and its rays often find what they need next beside it. How many rays are few is learnt: the fewer
-rays what was fetched has released, the more are sent. There is no minimal load.
+Concurrent dataflow sends to the less loaded. This one also sends, whatever the loads, where
+fetching would not pay: a fetch takes four startups and brings a ray one test, while a message of
+rays takes two and its rays often find what they need next beside it. How many rays are few is
+learnt: the fewer rays what was fetched has released, the more are sent. There is no minimal load.
 
 The numbers were chosen on one half of the scenes (README.md), so they are ESTIMATES.
 """
