@@ -84,6 +84,8 @@ class Outcome:
     """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
     ray_ends: list[int]
     """When each ray was finished."""
+    memory: dict[str, int] = field(default_factory=dict)
+    """What is written of a capacity, by column."""
 
 
 @dataclass
@@ -131,7 +133,7 @@ class Ledger:
 
     def did(self, pe: PE, begin: int, what: str, end: int, m: Message | None, **more: int) -> None:
         """Write down what a PE did."""
-        state = {"load": pe.load, "ready": len(pe.ready)}
+        state = {"load": pe.load, "ready": pe.n_ready}
         if what in ("serve", "answer"):  # the PE may be in an activity
             state = {"load": -1, "ready": -1}
         if m is not None:
@@ -140,6 +142,11 @@ class Ledger:
             state |= {"rays": m.n_rays}
             state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
+
+    def did_unpack(self, pe: PE, begin: int, end: int, rays: int, n_bytes: int) -> None:
+        """Write down that rays were taken out of their shares."""
+        of = {"rays": rays, "payload_bytes": n_bytes, "kind": RAYS}
+        self.did(pe, begin, "receive", end, None, **of)
 
     def clipped(self, end: int) -> list[Slice]:
         """What was done until the end of the run, by PE and time."""
