@@ -53,7 +53,7 @@ class CompiledRun:
 
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
-        records = ("logs", "record_tests", "record_counters")
+        records = ("logs", "record_tests", "record_counters", "uneven")
         if any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:

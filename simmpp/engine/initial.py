@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from simmpp.engine.arrays.records import (
     PIGGYBACK,
     SAMPLED,
 )
+from simmpp.engine.pe.pace import noise_array, pace_columns, pace_scalars
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -32,8 +34,10 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
+from simmpp.machine.noise import ONE, factors
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
+from simmpp.machine.uneven import total_speed
 from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters
@@ -78,8 +82,10 @@ def new_state(
     scalars = {name: getattr(machine, name) for name in MACHINE}
     scalars |= _of_the_run(workload, machine, placement)
     scalars |= _of_the_policy(parameters, views, address_of)
-    scalars["random_key"] = key(seed, "policy")
+    scalars |= {"random_key": key(seed, "policy"), **pace_scalars(machine, seed)}
     state = State(arrays, scalars | flags, recording.sink)
+    for name, of_pes in pace_columns(machine).items():
+        state.pes[name] = of_pes
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state, placement)
     if recording.counters:
@@ -91,7 +97,8 @@ def _least_ps(workload: Workload, machine: Machine) -> int:
     """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
     test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
     total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
-    return total_ps // machine.processors
+    least = Fraction(factors(machine.noise)[0], ONE)
+    return floor(total_ps * least / total_speed(machine.speed, machine.processors))
 
 
 def _sizes(
@@ -134,6 +141,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "owners": placement.owners,
         "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),
+        "noise_factors": noise_array(machine),
         "topology": network_of(topology),
         "free_ps": np.zeros(topology.n_links if machine.contention == LINKS else 0, np.int64),
     }

@@ -7,7 +7,7 @@ what has to be counted for it is declared in ``arrays.records`` and counted wher
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,10 +18,12 @@ from simmpp.common.documented import documented
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.uneven import bound_of
 
 if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
+    from simmpp.machine.machine import Machine
 
 COLUMNS = (
     "makespan_ps",
@@ -43,6 +45,8 @@ COLUMNS = (
     "events",
 )
 """Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
+UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")
+"""Further ones, in rows of sweeps with a machine that is uneven."""
 PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
 """Further ones, in rows of sweeps in which a policy packs."""
 
@@ -73,7 +77,7 @@ class Result(Displayed):
     rays_sent: int
     """Rays moved by messages."""
     compute_ps: NDArray[np.int64]
-    """(nb,) int64: time of each PE in tests and rays."""
+    """(nb,) int64: time of each PE in computing: tests and rays, and what launch_ps says."""
     communication_ps: NDArray[np.int64]
     """(nb,) int64: startups, packing, unpacking, probes."""
     waiting_ps: NDArray[np.int64]
@@ -86,6 +90,12 @@ class Result(Displayed):
     """(nb,) int64: most bytes of objects, resident and fetched, that each PE held."""
     events: int
     """Activities and arrivals."""
+    launch_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(nb,) int64: of compute_ps, startups of computing, and what lanes left empty add."""
+    work_ps: int = 0
+    """What all tests and rays cost: T(1), the makespan of one PE that holds everything."""
+    bound_ps: int = 0
+    """That over the sum of all PEs' speeds (nb where all have 1), rounded up."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     log: NDArray[np.void] | None = None
@@ -167,14 +177,24 @@ class Result(Displayed):
 
 
 def concluded(
-    state: State, arrivals: int, policy: str, engine: str, log: NDArray[np.void] | None
+    state: State,
+    arrivals: int,
+    policy: str,
+    engine: str,
+    log: NDArray[np.void] | None,
+    machine: Machine,
+    work_ps: int | None = None,
 ) -> Result:
-    """Clip the accounts at the makespan and check that the machine lost nothing."""
+    """Clip the accounts at the makespan and check that the machine lost nothing.
+
+    Without ``work_ps``, that of a machine that is not uneven, PEs have computed nothing else.
+    """
     makespan_ps = state["last_ray_ps"]
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
     communication_ps = state.pes["communication_ps"] - overrun_ps
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
+    work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
     sent_by_kind, bytes_sent = state.sent_until(makespan_ps)
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
@@ -197,6 +217,9 @@ def concluded(
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
+        launch_ps=state.pes["launch_ps"].copy(),
+        work_ps=work_ps,
+        bound_ps=bound_of(work_ps, machine.speed, machine.processors),
         rules_never_fired=_never_fired(state, parts_by_kind),
         log=log,
         counters=state.counters() if state["record_counters"] else None,

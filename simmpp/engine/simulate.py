@@ -14,7 +14,7 @@ from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
 from simmpp.engine.simpy_engine import SimpyRun
-from simmpp.machine.limits import beyond_the_clock, check_counters
+from simmpp.machine.limits import beyond_the_clock, check_counters, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
@@ -78,7 +78,8 @@ def simulate(
         raise beyond_the_clock() from None
     state.close_log()
     rows = collector.rows() if record.log is True else None
-    return concluded(state, run.arrivals, policy.title, engine, rows)
+    work_ps = total_compute_ps(workload, machine) if machine.is_uneven else None
+    return concluded(state, run.arrivals, policy.title, engine, rows, machine, work_ps)
 
 
 def _check(

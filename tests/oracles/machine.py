@@ -15,6 +15,7 @@ from oracles.costs import copy_ps, intersection_ps
 from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
 from oracles.network import distance, startups_ps
+from oracles.pace import Go, draw_noise, speed_now
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
@@ -126,6 +127,9 @@ class Simulation(Dispatch):
     def compute(self, time: int, pe: PE) -> int:
         """Up to a quantum of tests; returns the end of that."""
         clock = self.pay("communication", pe, time, self.machine.probe_ps)
+        pe.go = Go.begun(self.machine, speed_now(self.machine, pe.number, time), clock)
+        pe.go.noise = draw_noise(self.machine, self.seed, pe.number, pe.goes)
+        pe.goes += 1
         done_before = len(self.ledger.finished_ps)
         tests_left = self.machine.quantum
         while tests_left > 0 and pe.ready:
@@ -145,6 +149,9 @@ class Simulation(Dispatch):
                 clock = self.test(clock, pe, ray, obj)
                 tests_left -= 1
         done = len(self.ledger.finished_ps) - done_before
+        clock = self.pay("compute", pe, clock, pe.go.end - clock)
+        if pe.go.leaves_lanes_empty:
+            self.ledger.finished_ps[done_before:] = [clock] * done
         tests = self.machine.quantum - tests_left
         self.ledger.did(pe, time, "compute", clock, None, tests=tests, rays=done)
         return clock
@@ -152,7 +159,8 @@ class Simulation(Dispatch):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
-        clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
+        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj))
+        clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
         was_granted = ray in pe.granted
         pe.granted.discard(ray)
@@ -175,7 +183,8 @@ class Simulation(Dispatch):
 
     def finish(self, clock: int, pe: PE, ray: int) -> int:
         """A ray is shaded and leaves its children here."""
-        clock = self.pay("compute", pe, clock, self.machine.ray_ps)
+        pe.go.rays_ps += self.machine.ray_ps
+        clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.ledger.finished_ps.append(clock)
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from oracles.pace import Go
+
 
 class Part(NamedTuple):
     """What is packed and unpacked at one go: a batch of rays, a request, an object, or nothing."""
@@ -86,6 +88,9 @@ class PE:
     """PE: rays sent to it since it was heard."""
     worth: dict[int, float] = field(default_factory=dict)
     """Of objects in the transient memory, as the policy says; infinite if it has not."""
+    goes: int = 0
+    """At computing so far."""
+    go: Go = field(default_factory=Go)
     memory: list[int] = field(default_factory=lambda: [0] * 8)
     """For the policy."""
     draws: int = 0

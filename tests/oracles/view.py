@@ -11,6 +11,7 @@ import numpy as np
 
 from oracles.costs import copy_ps, intersection_ps
 from oracles.network import distance, network_ps, startups_ps
+from oracles.pace import rounded, speed_of
 from oracles.state import PE
 from oracles.world import World
 from simmpp.common.randomness import key
@@ -90,7 +91,8 @@ class Views(World):
         owner = self.owners[obj]
         view = self.view(pe, owner, nothing_else, draws)
         view.object, view.owner, view.object_bytes = obj, owner, self.object_bytes[obj]
-        view.test_ps = intersection_ps(self.machine, self.workload, obj)
+        cost_ps = intersection_ps(self.machine, self.workload, obj)
+        view.test_ps = rounded(cost_ps / speed_of(self.machine, pe.number))
         view.holders = sum(obj in each.resident for each in self.pes)
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]

@@ -101,6 +101,7 @@ ARRAYS = {
     "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row
     # of machine and policy
     "copy_costs": Array(COPY),
+    "noise_factors": Array(I8),  # equally likely ones; empty without noise
     "topology": Array(I8),  # as ``machine.topology`` reads it
     # What hooks are shown, filled anew for each question: one for all PEs or, where a policy has a
     # memory, one for each.
@@ -174,6 +175,13 @@ PARAMETERS = (
     *MACHINE,
     "processors",
     "n_objects",
+    "uneven",  # computing takes anything else than the sum of what tests and rays cost
+    "noise_key",
+    "straggler",  # the PE, NONE: nobody is late
+    "straggler_times",
+    "straggler_per",
+    "straggler_from_ps",
+    "straggler_to_ps",
     "contends",  # links and ports serve one message at a time
     "depth_first",
     "keeps",  # fetched objects, in transient memory

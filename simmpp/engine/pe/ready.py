@@ -56,7 +56,7 @@ def pop_ready(s: Run, me: int) -> None:
 
 
 @kernel
-def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
+def finish_ray(s: Run, me: int, ray: int) -> None:
     """A ray has made its last test and is shaded: its children become ready here."""
     pe = pes(s)[me]
     child, end = child_offsets(s)[ray], child_offsets(s)[ray + 1]
@@ -71,4 +71,3 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     pe.finished += 1
     s.rays_done += 1
     s.rays_left += end - child - 1
-    s.last_ray_ps = max(s.last_ray_ps, now_ps)

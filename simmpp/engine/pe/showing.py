@@ -14,11 +14,11 @@ from simmpp.engine.arrays.views import (
     peer_rows,
     pes,
     policy_views,
-    test_ps,
     topology,
 )
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.pace import test_here_ps
 from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
 from simmpp.machine.messages import RAYS
@@ -73,7 +73,7 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
         _show_load(s, view, miss.peer, now_ps)
     if reads & OBJECT:
         view.object, view.owner, view.requests = obj, other, miss.requests
-        view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
+        view.object_bytes, view.test_ps = object_bytes(s)[obj], test_here_ps(s, me, obj)
         view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
     if reads & WAY:
         view.hops = hops(topology(s), me, other)

@@ -28,6 +28,7 @@ from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
+from simmpp.engine.pe.pace import end_of_go, pace_of, paced_ps
 from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
@@ -159,7 +160,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
     start_ps = now_ps + s.probe_ps
-    clock_ps = start_ps
+    begin_ps = start_ps + s.compute_startup_ps
+    pace, cost_ps = pace_of(s, me, now_ps), 0
     pe.received_load = 0
     tests, done = 0, s.rays_done
     while tests < s.quantum and pe.n_ready > 0:
@@ -177,19 +179,24 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             if tests == s.quantum:
                 pe.cut = 1
                 break
-            clock_ps += test_ps(s)[obj]
-            _test(s, me, ray, obj, clock_ps)
+            cost_ps += test_ps(s)[obj]
+            _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
             tests += 1
         else:
-            clock_ps += s.ray_ps
+            cost_ps += s.ray_ps
             pop_ready(s, me)
-            finish_ray(s, me, ray, clock_ps)
+            finish_ray(s, me, ray)
+    done = s.rays_done - done
+    clock_ps = start_ps + end_of_go(s, me, cost_ps, tests, done, pace)
+    # Whatever follows the last of these rays was for others, which are finished later.
+    if done > 0:
+        s.last_ray_ps = max(s.last_ray_ps, clock_ps)
     if s.logs:
-        note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
+        note_compute(s, me, tests, done, now_ps, clock_ps)
     if s.record_counters:
         note_work(s, me, now_ps, start_ps, clock_ps)
         note_load(s, me, clock_ps)
-        note_finished(s, s.rays_done - done, clock_ps)
+        note_finished(s, done, clock_ps)
     pe.compute_ps += clock_ps - start_ps
     pe.communication_ps += s.probe_ps
     return clock_ps
