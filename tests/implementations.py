@@ -20,10 +20,14 @@ SEED = 4711
 def run(implementation: str, case: Case) -> Outcome:
     """What a run of the case gives, with its log and its tests."""
     if implementation == "oracle":
-        return simulate_slowly(
+        outcome = simulate_slowly(
             case.workload, case.machine, case.placement, case.policy, case.ready_order, SEED
         )
-    return outcome_of(result_of(implementation, case))
+    else:
+        outcome = outcome_of(result_of(implementation, case))
+    if case.policy.rules.idle:  # what it sends belongs to no activity; slices say it all
+        outcome.activities = []
+    return outcome
 
 
 def result_of(engine: str, case: Case) -> Result:
@@ -62,6 +66,8 @@ def outcome_of(result: Result) -> Outcome:
         rays=result.rays,
         tests=result.tests,
         rays_sent=result.rays_sent,
+        user_messages=result.user_messages,
+        user_dropped=result.user_dropped,
         parts_by_kind=result.parts_by_kind,
         compute_ps=result.compute_ps.tolist(),
         communication_ps=result.communication_ps.tolist(),
@@ -82,7 +88,7 @@ def activities_of(slices: list[Slice]) -> list[tuple[int, int, str, int, int]]:
     """(begin, PE, kind, end, tests): what is sent belongs to the activity that it follows."""
     activities: list[tuple[int, int, str, int, int]] = []
     for each in slices:
-        if each.what == "send":
+        if each.what == "send" and activities:
             activities[-1] = (*activities[-1][:3], each.end, activities[-1][4])
         else:
             kind = f"receive {MESSAGE_KINDS[each.kind]}" if each.what == "receive" else each.what

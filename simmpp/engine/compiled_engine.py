@@ -10,12 +10,20 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.records import NONE, Row, Run
+from simmpp.engine.arrays.records import NONE, SLEEP, WOKEN, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
-from simmpp.engine.event_heap import HEAD, INSTANT, PE_BITS, pop, push, replace_first
+from simmpp.engine.event_heap import (
+    HEAD,
+    INSTANT,
+    PE_BITS,
+    heap_lacks_room,
+    pop,
+    push,
+    replace_first,
+)
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
-from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking, starved
 
@@ -54,7 +62,8 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = ("logs", "record_tests", "record_counters", "uneven")
-        if any(self.state[name] for name in records) or not run_alone(self.state.runs):
+        talks = self.state["idle"] != 0  # PEs that have nothing to do may have something to say
+        if talks or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
             self._progress(0)
@@ -79,11 +88,12 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
             return FINISHED if s.rays_left == 0 else STARVED
         event = heap(s)[0]
         time_ps, rank, message = event.time_ps, event.rank, event.message
+        number = event.number
         # Not at once: messages that arrive until the last ray's end are counted.
         if s.rays_left == 0 and time_ps >= s.last_ray_ps:
             return FINISHED
         # Looked at before the event is taken, so that it is handled when there is room.
-        if room_lacking(s):
+        if room_lacking(s) or heap_lacks_room(s):
             return FULL
         if rank >= HEAD:
             move_first(s)
@@ -91,8 +101,10 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         pop(s)
         if message != NONE:
             _arrive(s, message, time_ps)
-        else:
+        elif number == processes(s)[rank - INSTANT].instants:
             _step(s, rank - INSTANT, time_ps)
+        else:  # of a sleeper whom a message has woken before
+            s.n_stale -= 1
     return PAUSED
 
 
@@ -107,6 +119,8 @@ def _arrive(s: Run, message: int, now_ps: int) -> None:
         note_arrival(s, message)
     if process.asleep:
         process.asleep = 0
+        if process.phase == WOKEN:
+            s.n_stale += 1
         _schedule_instant(s, me, now_ps)
 
 
@@ -128,9 +142,8 @@ def _step(s: Run, me: int, now_ps: int) -> None:
             push(s, m.head_ps, HEAD + m.source, m.number, row)
         else:
             push(s, m.arrival_ps, _arrival_rank(m), m.number, row)
-    if next_ps == SLEEP:
-        process.asleep = 1
-    else:
+    process.asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
+    if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
 
 

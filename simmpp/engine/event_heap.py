@@ -45,6 +45,12 @@ def _set(event: Row, time_ps: int, rank: int, number: int, message: int) -> None
 
 
 @kernel
+def heap_lacks_room(s: Run) -> bool:
+    """Might one more step not find room, as there are so many instants that come to nothing?"""
+    return s.heap_n < s.messages_n + s.processors + 1 + s.n_stale
+
+
+@kernel
 def push(s: Run, time_ps: int, rank: int, number: int, message: int) -> None:
     """Add an event to the binary heap."""
     events, at = heap(s), s.n_events

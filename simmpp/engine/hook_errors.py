@@ -22,7 +22,7 @@ from simmpp.policy.hooks import address_of
 from simmpp.policy.mistakes import file_of, line_in
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.plain import plain_view
-from simmpp.policy.policy import Hook
+from simmpp.policy.policy import HOOKS, Hook
 from simmpp.policy.view import View
 
 Raised = tuple[BaseException, NDArray[np.void]]
@@ -73,7 +73,7 @@ def _note(unraisable: Any) -> None:
     if not raised:
         error = unraisable.exc_value or unraisable.exc_type()
         raised.append((error, state.arrays["policy_views"].copy()))
-        for hook in ("send", "ask", "keep"):
+        for hook in HOOKS:
             if state[hook]:
                 state.runs[hook] = address_of(nothing)
 

@@ -34,6 +34,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
+from simmpp.machine.messages import USER_COPIED_AS
 from simmpp.machine.noise import ONE, factors
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
@@ -108,13 +109,16 @@ def _sizes(
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
     each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
+    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
         rays=n_rays,
         misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),
-        peers=1 + min(nb * nb, 2 * workload.n_tests * each),
+        peers=1 + pairs,
         sent=sent,
+        messages=min(sent, n_objects + 2 * nb + 1),
+        talks=parameters.rules.talks,
         tested=workload.n_tests if recording.tests else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
@@ -131,7 +135,8 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*machine.pack, *machine.unpack)]
+    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
         "itinerary_objects": workload.itinerary_objects,
@@ -209,11 +214,16 @@ def _of_the_policy(
         "send": address_of(policy.send, names),
         "ask": address_of(policy.ask, names),
         "keep": address_of(policy.keep, names),
+        "heard": address_of(policy.heard, names),
+        "idle": address_of(policy.idle, names),
+        "talks": policy.talks,
         "send_from": count(policy.batch),
         "ask_from": count(policy.ask_at_least),
         "send_reads": groups_read(policy.send),
         "ask_reads": groups_read(policy.ask),
         "keep_reads": groups_read(policy.keep),
+        "heard_reads": groups_read(policy.heard),
+        "idle_reads": groups_read(policy.idle),
         "remembers": _remembers(policy),
         "to_holders": policy.to_holders,
         "load_info": EXACT if load_info == SAMPLED and parameters.sample_ps == 0 else load_info,

@@ -1,6 +1,6 @@
 """What a run gives back: integers that add up.
 
-A further column of ``results.csv`` is a name in ``COLUMNS`` and a field or property of ``Result``;
+A further column of ``results.csv`` is a name in ``columns`` and a field or property of ``Result``;
 what has to be counted for it is declared in ``arrays.records`` and counted where it happens, in
 ``pe.step.note_peaks`` if it is the most that a PE holds of something.
 """
@@ -20,35 +20,10 @@ from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.uneven import bound_of
 
-if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
+if TYPE_CHECKING:  # who only reads results needs no numba
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
     from simmpp.machine.machine import Machine
-
-COLUMNS = (
-    "makespan_ps",
-    "messages",
-    "request_messages",
-    "object_messages",
-    "ray_messages",
-    "load_messages",
-    "bytes_sent",
-    "rays",
-    "tests",
-    "rays_sent",
-    "objects_fetched",
-    "compute_ps",
-    "communication_ps",
-    "waiting_ps",
-    "peak_rays",
-    "peak_bytes",
-    "events",
-)
-"""Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
-UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")
-"""Further ones, in rows of sweeps with a machine that is uneven."""
-PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
-"""Further ones, in rows of sweeps in which a policy packs."""
 
 
 @documented
@@ -90,6 +65,10 @@ class Result(Displayed):
     """(nb,) int64: most bytes of objects, resident and fetched, that each PE held."""
     events: int
     """Activities and arrivals."""
+    user_messages: int = 0
+    """Messages of the policy's own that were sent."""
+    user_dropped: int = 0
+    """Further ones that were not: too many, or to nobody."""
     launch_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(nb,) int64: of compute_ps, startups of computing, and what lanes left empty add."""
     work_ps: int = 0
@@ -123,7 +102,7 @@ class Result(Displayed):
     @property
     def messages(self) -> int:
         """Messages sent, of all kinds."""
-        return sum(self.messages_by_kind)
+        return sum(self.messages_by_kind) + self.user_messages
 
     @property
     def parts(self) -> int:
@@ -195,7 +174,8 @@ def concluded(
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
     work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
-    sent_by_kind, bytes_sent = state.sent_until(makespan_ps)
+    (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
+    sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
         raise ModelError(f"the accounts of a PE exceed the makespan of {makespan_ps} ps")
@@ -217,6 +197,8 @@ def concluded(
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),
         events=state["activities"] + arrivals,
+        user_messages=user_messages,
+        user_dropped=state["user_dropped"],
         launch_ps=state.pes["launch_ps"].copy(),
         work_ps=work_ps,
         bound_ps=bound_of(work_ps, machine.speed, machine.processors),
@@ -233,7 +215,7 @@ def _parts(state: State, sent_by_kind: tuple[int, int, int, int]) -> tuple[int, 
     """Only packed messages have their parts counted; of loads nothing is packed."""
     if state["packing"] == SINGLY:
         return sent_by_kind
-    requests, objects, rays, _ = state.arrays["parts_by_kind"].tolist()
+    requests, objects, rays, *_ = state.arrays["parts_by_kind"].tolist()
     return requests, objects, rays, sent_by_kind[LOAD]
 
 

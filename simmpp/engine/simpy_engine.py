@@ -19,9 +19,9 @@ from simpy.events import Event
 
 from simmpp.common.compiled import entry_point, njit
 from simmpp.common.errors import ModelError
-from simmpp.engine.arrays.records import BEGIN, MESSAGE, NONE
+from simmpp.engine.arrays.records import BEGIN, MESSAGE, NONE, SLEEP, WOKEN
 from simmpp.engine.network import move_head
-from simmpp.engine.pe.step import SLEEP, step
+from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, starved
 
@@ -103,8 +103,10 @@ class SimpyRun:
                 self._carry(n_sent)
             if runs["rays_left"][0] == 0 and not self._ending:
                 self._finish()
-            if next_ps == SLEEP:
+            if next_ps == SLEEP or phase == WOKEN:
                 self._asleep[me] = asleep = _happened(environment)
+                if next_ps != SLEEP:
+                    self._schedule_waking(me, next_ps - now_ps)
                 yield asleep
             else:
                 yield self._instant(me, next_ps - now_ps)
@@ -117,8 +119,26 @@ class SimpyRun:
 
     def _schedule_instant(self, me: int, event: Event, delay_ps: int) -> None:
         self._numbers[me] += 1
-        priority = (1 << 64 | me) << 64 | self._numbers[me]
-        self._environment.schedule(event, priority, delay_ps)
+        self._environment.schedule(event, self._priority(me), delay_ps)
+
+    def _priority(self, me: int) -> int:
+        """Of the instant of a PE that was scheduled last."""
+        return (1 << 64 | me) << 64 | self._numbers[me]
+
+    def _schedule_waking(self, me: int, delay_ps: int) -> None:
+        """An instant at which a sleeping PE is woken, unless a message wakes it before."""
+        waking = _happened(self._environment)
+        self._schedule_instant(me, waking, delay_ps)
+        waking._value = me, self._numbers[me]
+        waking.callbacks.append(self._wake)
+
+    def _wake(self, waking: Event) -> None:
+        """Now is the time: in this very instant, before all else, the PE goes on."""
+        me, number = waking.value
+        asleep = self._asleep[me]
+        if asleep is not None and number == self._numbers[me]:
+            self._asleep[me] = None
+            self._environment.schedule(asleep, self._priority(me), 0)
 
     def _carry(self, n_sent: int) -> None:
         """Messages of the outbox travel; with contention from one port or link to the next."""

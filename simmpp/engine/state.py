@@ -17,6 +17,7 @@ from simmpp.engine.arrays.views import message_marks
 from simmpp.engine.record.counters import Counters, end_counting
 from simmpp.engine.record.log import LOG_ROWS, Sink, hand_on, hand_on_last
 from simmpp.engine.residency import Arrays
+from simmpp.machine.messages import MESSAGE_KINDS, USER_WORDS
 
 
 class State:
@@ -70,14 +71,21 @@ class State:
             return
         if len(self.messages) - self.arrays["message_marks"][USED] < most:
             self._grow("messages", 2 * len(self.messages) + len(self.arrays["outbox"]))
+            if self["talks"]:
+                self._grow("user_words", USER_WORDS * len(self.messages))
         if self.log is not None and len(self.arrays["log"]) - self["n_logged"] < most + 2:
             self.runs["n_logged"] = hand_on(self._logged(), now_ps, self.log)
             if len(self.arrays["log"]) - self["n_logged"] < most + 2 + LOG_ROWS:
                 self._grow("log", 2 * len(self.arrays["log"]))
 
     def ensure_heap(self) -> None:
-        """See to it that the heap has a place for every message and an instant of every PE."""
+        """See to it that the heap has a place for every message and an instant of every PE.
+
+        And for twice the instants that have come to nothing, and one for each PE, as these grow.
+        """
         needed = len(self.messages) + len(self.pes) + 1
+        if self["talks"]:
+            needed += 2 * self["n_stale"] + len(self.pes)
         if len(self.arrays["heap"]) < needed:
             self._grow("heap", needed)
 
@@ -88,14 +96,18 @@ class State:
             self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
             hand_on_last(self._logged(), end_ps, self.log)
 
-    def sent_until(self, end_ps: int) -> tuple[tuple[int, int, int, int], int]:
-        """Messages by kind and bytes that had departed then; only load messages can be later."""
+    def sent_until(self, end_ps: int) -> tuple[tuple[int, int, int, int, int], int]:
+        """Messages by kind and bytes that had departed then.
+
+        Only loads and messages of the policy's own can be later.
+        """
         used = self.messages[: self.arrays["message_marks"][USED]]
         late = used[(used["kind"] != NONE) & (used["depart_ps"] > end_ps)]
-        by_kind = self.arrays["sent_by_kind"] - np.bincount(late["kind"], minlength=4)
+        counts = np.bincount(late["kind"], minlength=len(MESSAGE_KINDS))
+        by_kind = self.arrays["sent_by_kind"] - counts
         late_bytes = int(late["payload_bytes"].sum()) + self["header_bytes"] * len(late)
-        requests, objects, rays, loads = by_kind.tolist()
-        return (requests, objects, rays, loads), self["bytes_sent"] - late_bytes
+        requests, objects, rays, loads, own = by_kind.tolist()
+        return (requests, objects, rays, loads, own), self["bytes_sent"] - late_bytes
 
     def counters(self) -> Counters:
         """What was counted; the run must be over."""

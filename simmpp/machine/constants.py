@@ -28,13 +28,13 @@ from simmpp.machine.machine import (
     Machine,
     TestCost,
 )
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.messages import COPIED_KINDS
 from simmpp.machine.uneven import A_SPEED, Factor, Speeds, Straggler, named_pes
 
 OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
-"""In the order of MESSAGE_KINDS."""
+"""In the order of COPIED_KINDS."""
 _WORDS = ("topology", "contention")
 UNLIKE = ("speed", "noise", "straggler")
 """What makes PEs, or moments, unlike others: no constants of a product."""
@@ -99,7 +99,7 @@ def optional_fields(cls: type, nested: Mapping[Any, Any]) -> dict[str, Any]:
 CopyConstants: Any = create_model("CopyConstants", __base__=Strict, **optional_fields(CopyCost, {}))
 _of_kinds: dict[str, Any] = {
     kind: (CopyConstants, Field(default=CopyConstants(), description=meaning))
-    for kind, meaning in zip(MESSAGE_KINDS, _KINDS, strict=True)
+    for kind, meaning in zip(COPIED_KINDS, _KINDS, strict=True)
 }
 CopiesConstants: Any = create_model("CopiesConstants", __base__=CopyConstants, **_of_kinds)
 TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_fields(TestCost, {}))
@@ -140,7 +140,7 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
             if key in UNLIKE:
                 continue
             if isinstance(value, CopiesConstants):
-                for kind in MESSAGE_KINDS:
+                for kind in COPIED_KINDS:
                     given |= _numbers(value, f"{key}.{kind}.")
                     given |= _numbers(getattr(value, kind), f"{key}.{kind}.")
             elif isinstance(value, Strict):
@@ -191,7 +191,7 @@ def _arguments(cls: Any, numbers: Mapping[str, int], prefix: str) -> dict[str, A
         if key in numbers:
             arguments[name] = numbers[key]
         elif hint == Copies:
-            kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in MESSAGE_KINDS)
+            kinds = (_arguments(CopyCost, numbers, f"{key}.{kind}.") for kind in COPIED_KINDS)
             arguments[name] = tuple(CopyCost(**kind) for kind in kinds)
         elif hint in (TestCost, FatTree):
             arguments[name] = hint(**_arguments(hint, numbers, f"{key}."))

@@ -10,7 +10,7 @@ from simmpp.common.strict import expectation, fields_of, inner_class, is_by_name
 from simmpp.common.units import write_ps
 from simmpp.machine.constants import Constants
 from simmpp.machine.layers import Layers
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.messages import COPIED_KINDS
 from simmpp.machine.ranges import Known
 from simmpp.machine.uneven import Straggler
 
@@ -67,10 +67,10 @@ def _joined(lines: list[Line]) -> Iterator[Line]:
     for line in lines:
         first, _, last = line.key.partition(".")
         kind, _, what = last.partition(".")
-        if kind in MESSAGE_KINDS and what:
-            alike = [by_key.get(f"{first}.{each}.{what}") for each in MESSAGE_KINDS]
+        if kind in COPIED_KINDS and what:
+            alike = [by_key.get(f"{first}.{each}.{what}") for each in COPIED_KINDS]
             if {each and each[1:] for each in alike} == {line[1:]}:
-                if kind == MESSAGE_KINDS[0]:
+                if kind == COPIED_KINDS[0]:
                     yield line._replace(key=f"{first}.{what}")
                 continue
         yield line

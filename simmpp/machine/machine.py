@@ -227,6 +227,11 @@ class Machine:
         return not (plain and self.noise == "0" and self.straggler == NOBODY)
 
     @property
+    def uses(self) -> tuple[str, ...]:
+        """As ``PolicyParameters.uses``."""
+        return ("is uneven",) if self.is_uneven else ()
+
+    @property
     def processors(self) -> int:
         """Number of PEs, nb in the paper."""
         x, y, z = self.shape

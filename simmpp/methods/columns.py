@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
-from simmpp.engine import result
+from simmpp.engine import columns
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
 KEYS = (*PLACE, "effective_fraction", "policy", "seed")
 METHOD = "method"
 """A key as well where a sweep changes it."""
-NUMBERS = result.COLUMNS
+NUMBERS = columns.COLUMNS
 """Integers of a run; empty where the method does not know."""
-PACKED = result.PACKED_COLUMNS
-"""Further ones, of sweeps in which a policy packs."""
+BY_USE = {
+    "packs": columns.PACKED_COLUMNS,
+    "talks": columns.USER_COLUMNS,
+    "is uneven": columns.UNEVEN_COLUMNS,
+}
+"""Further ones, of sweeps in which a policy or a machine makes use of something: ``uses``."""
+FURTHER = tuple(name for names in BY_USE.values() for name in names)
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 
-def result_columns(further: Sequence[str] = (), *, packs: bool = False) -> tuple[str, ...]:
-    """The columns of ``results.csv`` with those of a sweep's further keys."""
-    numbers = (*NUMBERS, *PACKED) if packs else NUMBERS
-    return (*KEYS, *further, METHOD, "engine", *numbers, "error")
+def result_columns(further: Sequence[str] = (), uses: Collection[str] = ()) -> tuple[str, ...]:
+    """The columns of ``results.csv`` with those of a sweep's further keys, and of what it uses."""
+    used = (name for use, names in BY_USE.items() if use in uses for name in names)
+    return (*KEYS, *further, METHOD, "engine", *NUMBERS, *used, "error")

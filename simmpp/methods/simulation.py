@@ -7,7 +7,7 @@ import numpy as np
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
-from simmpp.methods.columns import NUMBERS, PACKED
+from simmpp.methods.columns import FURTHER, NUMBERS
 
 
 def simulation(case: Case) -> dict[str, int]:
@@ -27,5 +27,5 @@ def simulation(case: Case) -> dict[str, int]:
 
 def integers(result: Result) -> dict[str, int]:
     """The integers of a result, by column."""
-    values = {column: np.atleast_1d(getattr(result, column)) for column in (*NUMBERS, *PACKED)}
+    values = {column: np.atleast_1d(getattr(result, column)) for column in (*NUMBERS, *FURTHER)}
     return {column: sum(value.tolist()) for column, value in values.items()}

@@ -250,6 +250,12 @@ class PolicyParameters:
         return self.packing != "none"
 
     @property
+    def uses(self) -> tuple[str, ...]:
+        """What has columns of its own in a table of results, where anything makes use of it."""
+        uses = {"packs": self.packs, "talks": self.rules.talks}
+        return tuple(use for use, it_does in uses.items() if it_does)
+
+    @property
     def title(self) -> str:
         """The label, or the name where none was given."""
         return self.label or self.name

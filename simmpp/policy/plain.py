@@ -17,6 +17,8 @@ from simmpp.policy.policy import Hook
 from simmpp.policy.record import VIEW
 from simmpp.policy.view import View
 
+WRITTEN = ("memory", "other", "words")
+"""Fields that a hook may write."""
 _CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 
 
@@ -37,14 +39,15 @@ class PlainHooks:
         return int(ctypes.cast(callback, ctypes.c_void_p).value or 0)
 
     def _answer(self, hook: Hook, parameters: tuple[str, ...], address: int) -> int:
-        """What the hook says, and writes into its memory."""
+        """What the hook says, and writes."""
         words = (ctypes.c_int64 * (VIEW.itemsize // 8)).from_address(address)
         record: Any = np.frombuffer(words, VIEW)  # type: ignore[call-overload]
         view = plain_view(record[0], parameters)
         answer = hook(view)
         if isinstance(answer, bool):
             self.answered_bool.add(hook)
-        record["memory"] = view.memory
+        for name in WRITTEN:
+            record[name] = getattr(view, name)
         return int(answer)
 
 

@@ -24,6 +24,7 @@ Hook = Callable[[View], int]
 Packing = Literal["none", "requests", "all"]
 """What goes to one PE at one dispatch in one message: nothing, its requests, or everything."""
 Candidates = Literal["owner", "holders"]
+HOOKS = ("send", "ask", "keep", "heard", "idle")
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
@@ -46,6 +47,13 @@ class Policy:
     goes; else its rank in the memory for fetched objects, where the least rank leaves first, of
     equal ones the least recently used. Without this hook all are equal. What has just come leaves
     last."""
+    heard: Hook | None = None
+    """A message of the policy's own has come, its words in ``v.words``, from ``v.other``. Above 0:
+    it is answered, with the words that the hook leaves in ``v.words``; else not."""
+    idle: Hook | None = None
+    """The PE has nothing to do and is about to sleep. When is it to be woken, if no message comes
+    before? 0 or less: never; else the time (``v.now_ps`` + so many). Then it decides again, as at
+    the end of an activity, and this is asked anew. ``v.other = k`` sends ``v.words`` to PE k."""
     batch: int | str = 1
     """``send`` is asked when that many rays wait, or nothing else is to do: a count, or the name of
     a number. So an engine need not look at every PE again and again."""
@@ -78,8 +86,8 @@ class Policy:
     @property
     def hooks(self) -> dict[str, Hook]:
         """Those that it has, by what they are asked."""
-        all_three = {"send": self.send, "ask": self.ask, "keep": self.keep}
-        return {what: function for what, function in all_three.items() if function is not None}
+        of_all = {what: getattr(self, what) for what in HOOKS}
+        return {what: function for what, function in of_all.items() if function is not None}
 
     @property
     def sends(self) -> bool:
@@ -90,6 +98,11 @@ class Policy:
     def asks(self) -> bool:
         """The policy has a hook that asks for objects."""
         return self.ask is not None
+
+    @property
+    def talks(self) -> bool:
+        """The policy may send messages of its own."""
+        return self.idle is not None or self.heard is not None
 
     @property
     def to_holders(self) -> bool:

@@ -10,12 +10,11 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from simmpp.machine.messages import USER_WORDS
 from simmpp.policy.view import WORDS, View
 
-_SEVERAL = ("parameter", "memory")
-VIEW = np.dtype(
-    [(name, "i8", (WORDS,)) if name in _SEVERAL else (name, "i8") for name in View.__annotations__]
-)
+_SEVERAL = {"parameter": (WORDS,), "memory": (WORDS,), "words": (USER_WORDS,)}
+VIEW = np.dtype([(name, "i8", _SEVERAL.get(name, ())) for name in View.__annotations__])
 """A ``View`` in memory."""
 RECORD = numba.from_dtype(VIEW)
 """The same for numba."""

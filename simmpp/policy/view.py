@@ -15,7 +15,9 @@ class View:
     """What a PE may know when its policy decides; whole numbers (int64), in this order in memory.
 
     *The other* is, in ``send``, the PE that rays may go to; in ``ask`` and ``keep``, the owner of
-    the object; what is said of ``ask`` holds for ``keep``. A hook gets, of the fields below, those
+    the object; in ``heard`` who sent the message; in ``idle`` there is none. What is said of
+    ``ask`` holds for ``keep``; in ``heard`` and ``idle`` there is no object, as in ``send``. A hook
+    gets, of the fields below, those
     that it reads; what it does not read costs nothing. A
     further field is a line at the end, its group in ``GROUPS`` if it has to be looked up, and its
     value in ``engine.pe.showing``.
@@ -34,11 +36,12 @@ class View:
     held_bytes: int
     """Bytes of the objects in its memory, resident and fetched."""
     nothing_else: int
-    """1 if no ray was ready and the inbox empty when this dispatch began, else 0; ``keep``: 0."""
+    """1 if no ray was ready and the inbox empty when this dispatch began, else 0; ``keep`` and
+    ``heard``: 0; ``idle``: 1."""
     initial_load: int
     """Primary rays / nb, rounded down: what is known of a PE before it is heard."""
     other: int
-    """The other PE."""
+    """The other PE; ``idle``: -1, or for the hook to write: the PE that ``words`` go to."""
     known_load: int
     """Load last heard of the other; -1: not known (load_info none)."""
     age_ps: int
@@ -48,12 +51,14 @@ class View:
     hops: int
     """Links between this PE and the other."""
     send_ps: int
-    """What sending costs this PE: ``send`` all waiting rays in one message, ``ask`` a request."""
+    """What sending costs this PE: ``send`` all waiting rays in one message, ``ask`` a request,
+    ``heard`` and ``idle`` a message of the policy's own."""
     receive_ps: int
-    """What receiving costs: ``send`` the other, for these rays; ``ask`` this PE, for the object."""
+    """What receiving costs: ``send`` the other, for these rays; ``ask`` this PE, for the object;
+    ``heard`` and ``idle`` a message of the policy's own."""
     flight_ps: int
     """Time in between without contention: ``send`` of the message; ``ask`` of the request, of its
-    answer, and what answering takes."""
+    answer, and what answering takes; ``heard`` of an answer; ``idle`` 0."""
     object: int
     """``ask``: the object's number; ``send``: -1, and what follows of objects is 0."""
     object_bytes: int
@@ -65,9 +70,10 @@ class View:
     holders: int
     """PEs that have it in memory for good, the owner among them."""
     waiting: int
-    """``send``: rays that wait and may go to the other. ``ask``: rays that wait for the object."""
+    """``send``: rays that wait and may go to the other. ``ask``: rays that wait for the object.
+    ``heard``, ``idle``: all that wait."""
     unasked: int
-    """``ask``: those of them that no request covers; ``send``: 0."""
+    """``ask``: those of them that no request covers; else 0."""
     requests: int
     """``ask``: requests for it that are in flight."""
     min_load: int
@@ -101,6 +107,9 @@ class View:
     fetch_flight_ps: int
     """Time in between, one after the other: flights without contention, and what answering takes.
     """
+    words: MutableSequence[int]
+    """(4,) of a message of the policy's own: ``heard`` those that came, ``idle`` 0; for the hook to
+    write those that it sends."""
 
     if TYPE_CHECKING:
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
-from simmpp.methods.columns import KEYS, METHOD, NUMBERS, PACKED, result_columns
+from simmpp.methods.columns import FURTHER, KEYS, METHOD, NUMBERS, result_columns
 from simmpp.methods.simulation import integers
 from simmpp.methods.table import METHODS
 from simmpp.run.point import Point, PolicyRun
@@ -46,7 +46,7 @@ def point_row(
         "seed": seed,
         "method": settings.method,
         "engine": settings.engine if METHODS[settings.method].uses_engine else "",
-        **dict.fromkeys((*NUMBERS, *PACKED), ""),
+        **dict.fromkeys((*NUMBERS, *FURTHER), ""),
         **numbers,
         "error": error,
     }
@@ -66,8 +66,8 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
-    packs = any(run.parameters.packs for run in runs)
-    write_csv(in_order(row(point, run) for run in runs), result_columns(packs=packs), path)
+    uses = {use for run in runs for use in run.parameters.uses} | set(point.machine.uses)
+    write_csv(in_order(row(point, run) for run in runs), result_columns(uses=uses), path)
 
 
 def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:

@@ -80,7 +80,11 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  objects", lambda run: f"{run.result.object_parts}"),
         ("  batches of rays", lambda run: f"{run.result.ray_parts}"),
     ]
-    packs = any(run.parameters.packs for run in runs)
+    packs, talks = (any(use in run.parameters.uses for run in runs) for use in ("packs", "talks"))
+    of_its_own: list[tuple[str, Cell]] = [
+        ("  of the policy's own", lambda run: f"{run.result.user_messages}"),
+        ("    not sent, too many", lambda run: f"{run.result.user_dropped}"),
+    ]
     return [
         ("message profit", lambda run: _times(ratio(base.messages, run.result.messages))),
         *(of_parts if packs else []),
@@ -89,6 +93,7 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  objects", lambda run: f"{run.result.object_messages}"),
         ("  rays", lambda run: f"{run.result.ray_messages}"),
         ("  loads", lambda run: f"{run.result.load_messages}"),
+        *(of_its_own if talks else []),
         *(parts if packs else []),
     ]
 

@@ -35,7 +35,7 @@ def _problems(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _problem_of_material(m: Material) -> str:
-    numbers = (*m.colour, m.kd, m.ks, m.shine, m.transmittance)
+    numbers = (*m.colour, m.kd, m.ks, m.shine, m.transmittance, *m.emission)
     if problem := _problem_of_numbers(numbers):
         return problem
     if m.transmittance > 1:

@@ -166,7 +166,8 @@ def write_nff(scene: Scene) -> str:
     """The scene as NFF text that reads back as the same geometry, to the last bit.
 
     Meshes are written triangle by triangle. An ``f`` line is written where the material changes, as
-    the SPD's generators do. Raises SceneError for a scene that NFF can't hold.
+    the SPD's generators do; that something shines NFF has no word for. Raises SceneError for a
+    scene that NFF can't hold.
     """
     # Fields of a camera and a material are called as the writers of their lines call them.
     parts = [EXACT.background(scene.background), EXACT.view(**vars(scene.camera))]
@@ -178,7 +179,9 @@ def write_nff(scene: Scene) -> str:
     for obj in scene.objects:
         if obj.material != current:
             current = obj.material
-            parts.append(EXACT.material(**vars(scene.materials[current])))
+            fields = dict(vars(scene.materials[current]))
+            del fields["emission"]
+            parts.append(EXACT.material(**fields))
         parts.append(_object_lines(obj))
     return "".join(parts)
 

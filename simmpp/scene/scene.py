@@ -38,6 +38,8 @@ class Material:
     """Share of the light that passes; a surface with more than 0 refracts."""
     ior: float = 1.0
     """Index of refraction; only read where transmittance > 0."""
+    emission: Vector = (0.0, 0.0, 0.0)
+    """Red, green and blue of what it shines by itself, to both sides; only paths see it."""
 
     @property
     def reflects(self) -> bool:

@@ -60,8 +60,11 @@ class Plan:
     @property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
-        packs = any(planned.point.policy.packs for planned in self.points)
-        return result_columns(self.further, packs=packs)
+        configs = (planned.point.config for planned in self.points)
+        machines = (config.machine_for(config.processors) for config in configs)
+        policies = (planned.point.policy for planned in self.points)
+        uses = {use for of in (*policies, *machines) for use in of.uses}
+        return result_columns(self.further, uses)
 
     @property
     def tasks(self) -> list[Task]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CEILING, REFERENCE
-from simmpp.run.profit import ratio
+from simmpp.run.profit import efficiency, ratio, speedup
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.stopping import corrected_interval
@@ -73,12 +73,9 @@ def _over_seeds(
         values = profits_of(both, column)
         bounds = _bounds(values, both, tolerance)
         result |= {measure + name: value for name, value in _statistics(values, bounds).items()}
-    # one PE with everything in memory does nothing but compute
-    speedups = [
-        ratio(row["compute_ps"], row["makespan_ps"]) for _, row in both if row["compute_ps"] != ""
-    ]
-    result["speedup"] = _mean(speedups)
-    result["efficiency"] = _mean([speedup / any_row["processors"] for speedup in speedups])
+    known = [row for _, row in both if row["compute_ps"] != ""]
+    result["speedup"] = _mean([speedup(row) for row in known])
+    result["efficiency"] = _mean([efficiency(row) for row in known])
     return result
 
 

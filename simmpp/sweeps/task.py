@@ -44,7 +44,8 @@ def task_of(point: GridPoint, digest: str) -> Task:
     """
     config, policy = point.config, canonical(point.policy)
     settings = config.settings
-    if settings.method == SIMULATE and _holds_everything(config):
+    talks = policy.rules.idle is not None  # also where nothing else is to do
+    if settings.method == SIMULATE and not talks and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
@@ -76,7 +77,7 @@ def constants_of(config: Config) -> dict[str, Any]:
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
     rules, defaults = policy.rules, PolicyParameters()
-    if rules.all_resident:
+    if rules.all_resident and rules.idle is None:
         return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 from collections.abc import Iterator
 
@@ -11,9 +10,9 @@ import numpy as np
 from simmpp.common.compiled import source_digest
 from simmpp.common.modules import TRACER
 from simmpp.scene.columns import columns_of
-from simmpp.scene.scene import Scene
+from simmpp.scene.scene import Material, Scene
 from simmpp.scene.wire import sizes_on_the_wire
-from simmpp.workload.picture import Picture
+from simmpp.workload.picture import PATH, Picture
 
 
 def digest_of(scene: Scene, picture: Picture) -> str:
@@ -30,20 +29,28 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
 def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
     picture = picture.of(scene)
-    _, *settings = dataclasses.astuple(picture)
-    yield memoryview(repr((source_digest(TRACER), picture.pixels, *settings)).encode())
+    settings = {**vars(picture), "resolution": picture.pixels, "samples": picture.shape}
+    told = sorted({**settings, "passes": picture.passes}.items())
+    yield memoryview(repr((source_digest(TRACER), told)).encode())
     camera = scene.camera
     yield _numbers(*camera.eye, *camera.at, *camera.up, camera.angle_degrees)
     yield _numbers(*(x for light in scene.lights if picture.shadows for x in light.position))
-    # Without refraction no ray reads the index, so it must not tell two scenes apart.
-    spawned = [(m.reflects, m.transmits, m.ior if m.transmits else 1.0) for m in scene.materials]
+    spawned = [_spawning(material, picture) for material in scene.materials]
     objects = columns_of(scene)
-    of_materials = np.array(spawned, dtype=np.float64).reshape(-1, 3)
+    of_materials = np.array(spawned, dtype=np.float64).reshape(len(spawned), -1)
     yield sizes_on_the_wire(objects).data
     yield of_materials[objects.materials].data
     yield from (objects.kinds.data, objects.spheres.data, objects.cones.data)
     yield from (objects.n_vertices.data, objects.vertices.data)
     yield from (objects.n_faces.data, objects.faces.data)
+
+
+def _spawning(m: Material, picture: Picture) -> tuple[float, ...]:
+    """What decides which rays a hit on the material spawns."""
+    # Without refraction no ray reads the index, so it must not tell two scenes apart.
+    rays = (m.reflects, m.transmits, m.ior if m.transmits else 1.0)
+    chances = (*m.colour, m.kd, m.ks, m.transmittance, *m.emission)
+    return (*rays, *chances) if picture.render == PATH else rays
 
 
 def _numbers(*numbers: float) -> memoryview:

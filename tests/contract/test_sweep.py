@@ -76,7 +76,7 @@ def tables(out: Path, **options: object) -> dict[str, bytes]:
 def test_columns_and_order(expected: dict[str, bytes], tmp_path: Path) -> None:
     (tmp_path / "r.csv").write_bytes(expected["results.csv"])
     rows = pandas.read_csv(tmp_path / "r.csv")
-    assert tuple(rows.columns) == result_columns(packs=True)
+    assert tuple(rows.columns) == result_columns(uses=["packs"])
     assert len(rows) == 2 * 2 * 3 * 2
     keys = ["scene", "processors", "fraction", "effective_fraction", "policy", "seed"]
     assert rows[keys].equals(rows[keys].sort_values(keys, ignore_index=True))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from oracles.state import PE, Message
-from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 
 
 class Slice(NamedTuple):
@@ -48,6 +48,8 @@ class Outcome:
     rays_sent: int
     parts_by_kind: tuple[int, int, int, int]
     """Requests, objects, batches of rays and loads that messages carried."""
+    user_messages: int
+    user_dropped: int
     compute_ps: list[int]
     communication_ps: list[int]
     waiting_ps: list[int]
@@ -84,6 +86,8 @@ class Ledger:
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
     ray_hops: list[int] = field(default_factory=list)
+    dropped: int = 0
+    """Messages of the policy's own that were not sent."""
     held_rays: list[int] = field(default_factory=list)
     held_bytes: list[int] = field(default_factory=list)
 
@@ -155,6 +159,8 @@ class Ledger:
             rays=len(self.finished_ps),
             tests=len(self.tested),
             rays_sent=sum(m.n_rays for m in sent),
+            user_messages=sum(m.kind == USER for m in sent),
+            user_dropped=self.dropped,
             parts_by_kind=(parts[0], parts[1], parts[2], parts[3]),
             compute_ps=compute,
             communication_ps=communication,

@@ -12,20 +12,20 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from oracles.costs import copy_ps, intersection_ps
-from oracles.dispatch import Dispatch
 from oracles.ledger import Outcome
 from oracles.network import distance, startups_ps
 from oracles.pace import Go, draw_noise, speed_now
 from oracles.state import PE, Message, Part
+from oracles.talking import Talking
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
-class Simulation(Dispatch):
+class Simulation(Talking):
     """The event loop and the activities of a PE."""
 
     def run(self) -> None:
@@ -37,6 +37,8 @@ class Simulation(Dispatch):
             "begin": self.begin,
             "dispatch": self.dispatch,
             "take": self.take,
+            "rest": self.rest,
+            "wake": self.wake,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -70,7 +72,7 @@ class Simulation(Dispatch):
             n_tests = len(self.ledger.tested) - tests_before
             self.ledger.open[pe.number] = (time, "compute", n_tests)
         else:
-            pe.asleep = True
+            self.fall_asleep(time, pe)
             return
         self.sample_bytes(pe)
         self.schedule(work_end, pe, "dispatch")
@@ -78,7 +80,7 @@ class Simulation(Dispatch):
     def receive(self, time: int, pe: PE, message: Message) -> int:
         """Unpack one message and do what it asks for; returns the end of that."""
         _, cost = startups_ps(self.machine, message.source, pe.number)
-        unpack = self.machine.unpack
+        unpack = (*self.machine.unpack, self.machine.unpack[REQUEST])
         cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
         clock = self.pay("communication", pe, time, cost)
         self.ledger.received += 1
@@ -87,6 +89,7 @@ class Simulation(Dispatch):
         pe.in_flight_to[message.source] = 0
         if message.count(OBJECT) or message.count(RAYS):
             pe.peers.add(message.source)
+            self.get_on(pe)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -100,6 +103,8 @@ class Simulation(Dispatch):
         if wanted:
             answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
             clock = self.send(clock, pe, message.source, answer)
+        if message.count(USER):
+            clock = self.hear(clock, pe, message)
         self.sample_rays(pe)
         return clock
 
@@ -159,6 +164,7 @@ class Simulation(Dispatch):
     def test(self, clock: int, pe: PE, ray: int, obj: int) -> int:
         """One intersection."""
         self.ledger.tested.append((ray, obj))
+        self.get_on(pe)
         pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj))
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
@@ -186,6 +192,7 @@ class Simulation(Dispatch):
         pe.go.rays_ps += self.machine.ray_ps
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.ledger.finished_ps.append(clock)
+        self.get_on(pe)
         self.rays_left -= 1
         children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]
         pe.ready.remove(ray)
@@ -199,7 +206,8 @@ class Simulation(Dispatch):
         self.sample_loads(time)
         messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
-        self.ledger.end_activity(pe.number, clock)
+        if pe.number in self.ledger.open:  # not when it was woken
+            self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:
             self.schedule(clock, pe, "begin")
         else:

@@ -17,6 +17,7 @@ class Part(NamedTuple):
     payload_bytes: int
     obj: int = -1
     rays: tuple[int, ...] = ()
+    words: tuple[int, ...] = ()
 
 
 @dataclass
@@ -105,6 +106,14 @@ class PE:
     """Objects that have come on request."""
     released: int = 0
     """Rays that these made ready."""
+    wish: int = 0
+    """When the policy wants it to be woken; 0: not at all."""
+    last_woken: int = 0
+    """When it was; 0: never."""
+    said: int = 0
+    """Messages of the policy's own since it last got on."""
+    times_woken: int = 0
+    """Since then."""
 
     @property
     def load(self) -> int:

@@ -13,7 +13,7 @@ from oracles.ledger import Ledger
 from oracles.network import Network, network_ps, startups_ps
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import OBJECT, RAYS
+from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Policy
@@ -88,7 +88,8 @@ class World:
         """Pack a message and let it depart; returns the time of that."""
         begin = clock
         cost, _ = startups_ps(self.machine, pe.number, destination)
-        cost += sum(copy_ps(self.machine.pack[part.kind], part.payload_bytes) for part in parts)
+        pack = (*self.machine.pack, self.machine.pack[REQUEST])
+        cost += sum(copy_ps(pack[part.kind], part.payload_bytes) for part in parts)
         clock = self.pay("communication", pe, clock, cost)
         message = Message(pe.number, destination, pe.sends, tuple(parts), pe.load, clock)
         pe.sends += 1

@@ -33,6 +33,7 @@ from simmpp.engine.arrays.records import (
     MESSAGE,
     MISS,
     MOMENT,
+    PACE,
     PE,
     PEER,
     PROCESS,
@@ -42,7 +43,7 @@ from simmpp.engine.arrays.records import (
     TRAFFIC,
 )
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import MESSAGE_KINDS
+from simmpp.machine.messages import MESSAGE_KINDS, USER_WORDS
 from simmpp.policy.record import VIEW
 
 I1, I4, I8 = np.dtype("u1"), np.dtype("i4"), np.dtype("i8")
@@ -61,6 +62,10 @@ class Sizes:
     """Rows: pairs of PEs that know of each other, at most."""
     sent: int
     """Messages that one step of a PE sends at most."""
+    messages: int
+    """In flight or in an inbox, to begin with."""
+    talks: bool
+    """The policy may send messages of its own."""
     tested: int
     """Tests that are recorded."""
     logged: int
@@ -118,8 +123,10 @@ ARRAYS = {
     "peer_buckets": Array(I4, lambda n: _hashed(n.peers)),
     "peer_marks": Array(I4, lambda n: 2),
     # in flight or in an inbox; grows
-    "messages": Array(MESSAGE, lambda n: min(n.sent, n.objects + 2 * n.nb + 1)),
+    "messages": Array(MESSAGE, lambda n: n.messages),
     "message_marks": Array(I4, lambda n: 2),
+    # Words of messages of the policy's own, USER_WORDS for each place; empty if it sends none.
+    "user_words": Array(I8, lambda n: USER_WORDS * n.messages if n.talks else 0),
     # Misses with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_from rays on.
     "unasked_ends": Array(I4, lambda n: 4 * n.nb),
     "unasked_links": Array(I4, lambda n: 2 * n.misses),
@@ -175,13 +182,7 @@ PARAMETERS = (
     *MACHINE,
     "processors",
     "n_objects",
-    "uneven",  # computing takes anything else than the sum of what tests and rays cost
-    "noise_key",
-    "straggler",  # the PE, NONE: nobody is late
-    "straggler_times",
-    "straggler_per",
-    "straggler_from_ps",
-    "straggler_to_ps",
+    *PACE,
     "contends",  # links and ports serve one message at a time
     "depth_first",
     "keeps",  # fetched objects, in transient memory
@@ -194,11 +195,16 @@ PARAMETERS = (
     "send",  # addresses of the policy's hooks, 0 for one that it does not have
     "ask",
     "keep",
+    "heard",
+    "idle",
     "send_from",  # waiting rays from which on they are asked
     "ask_from",
     "send_reads",  # groups of the view's fields
     "ask_reads",
     "keep_reads",
+    "heard_reads",
+    "idle_reads",
+    "talks",  # the policy may send messages of its own
     "remembers",  # each PE has a view of its own
     "to_holders",  # rays may go to any PE that holds what they need
     "random_key",
@@ -229,6 +235,8 @@ COUNTERS = (
     "arrivals",  # that it has seen
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
+    "user_dropped",  # messages of the policy's own that were one too many, or to nobody
+    "n_stale",  # events in the heap of sleepers whom a message woke before their time
 )
 REPORT = (
     "phase",  # of the PE's next instant

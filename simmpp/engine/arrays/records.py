@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from simmpp.machine.messages import MESSAGE_KINDS
+
 Run = Any
 """A RUN record; numba's type, which Python has no name for."""
 Row = Any
@@ -44,9 +46,23 @@ PE = np.dtype(
         ("finished", "i8"),  # rays that ended here
         ("fetched", "i8"),  # objects that have come on request
         ("released", "i8"),  # rays that these made ready
+        ("user_sent", "i8"),  # messages of its policy's own, since it last got on
+        ("wakes", "i8"),  # times that it was woken since then because its policy wanted to be
+        ("wake_ps", "i8"),  # when it wants to be, 0: not at all
+        ("woken_ps", "i8"),  # when it was, last
     ],
     align=True,
 )
+PACE = (
+    "uneven",  # computing takes anything else than the sum of what tests and rays cost
+    "noise_key",
+    "straggler",  # the PE that is late, NONE: nobody
+    "straggler_times",
+    "straggler_per",
+    "straggler_from_ps",
+    "straggler_to_ps",
+)
+"""Parameters of ``pe.pace``."""
 RAY = np.dtype(
     [
         ("tested", "i4"),  # objects of its itinerary that it has been tested against
@@ -112,7 +128,7 @@ MESSAGE = np.dtype(
     align=True,
 )
 COPY = np.dtype([("fixed_ps", "i8"), ("bytes_per_s", "i8")])
-"""Cost of packing (4 kinds of message), then of unpacking (4 kinds)."""
+"""Cost of packing each kind of message, then of unpacking each."""
 
 EVENT = np.dtype(
     [
@@ -192,6 +208,11 @@ LOAD_INFO = {
 }
 SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
 PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
-BEGIN, DISPATCH = range(2)
+BEGIN, DISPATCH, REST, WOKEN = range(4)
+"""Phases of a PE's instants: an activity begins, or has ended and its policy decides; what ``idle``
+said has been sent, and the PE sleeps if no message has come; the time that ``idle`` gave is there,
+unless a message was before it."""
+SLEEP = -1
+"""In place of the time of a PE's next instant: none, until a message arrives."""
 ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
-PACK, UNPACK = 0, 4
+PACK, UNPACK = 0, len(MESSAGE_KINDS)

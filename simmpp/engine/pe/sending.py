@@ -24,13 +24,15 @@ from simmpp.engine.arrays.views import (
     sent_by_kind,
     sort_items,
     sort_keys,
+    user_words,
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.costs import copy_ps, sending_ps
 from simmpp.engine.pe.peers import note_exchange, peer_of
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
+from simmpp.policy.view import View
 
 
 @kernel
@@ -65,6 +67,15 @@ def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps
 def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
     """Tell another PE the load, which is in every header: there is nothing else in this message."""
     return _send(s, me, _new_part(s, LOAD, other, 0), now_ps)
+
+
+@kernel
+def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
+    """Send a message of the policy's own: the words that it has left in its view."""
+    row = _new_part(s, USER, other, USER_WORDS * WORD_BYTES)
+    for i in range(USER_WORDS):
+        user_words(s)[USER_WORDS * row + i] = view.words[i]
+    return _send(s, me, row, now_ps)
 
 
 @kernel

@@ -40,12 +40,11 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     view.load, view.other = pes(s)[me].load, other
     view.waiting, view.unasked = waiting, 0
     if s.send_reads & LOADS:
-        _show_load(s, view, peer_row, now_ps)
+        show_load(s, view, peer_row, now_ps)
     if s.send_reads & ~LOADS == 0:
         return
     if s.send_reads & OBJECT:
-        view.object, view.owner = NONE, NONE
-        view.object_bytes = view.test_ps = view.holders = view.requests = 0
+        show_nothing(view)
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
@@ -56,7 +55,14 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
         view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
     if s.send_reads & WANTED:
         show_wanted(s, view, me, peer_row)
-    _show_self(s, view, me, now_ps, s.send_reads)
+    show_self(s, view, me, now_ps, s.send_reads)
+
+
+@kernel
+def show_nothing(view: View) -> None:
+    """There is no object that is asked about."""
+    view.object, view.owner = NONE, NONE
+    view.object_bytes = view.test_ps = view.holders = view.requests = 0
 
 
 @kernel
@@ -70,7 +76,7 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
     if reads == 0:
         return
     if reads & LOADS:
-        _show_load(s, view, miss.peer, now_ps)
+        show_load(s, view, miss.peer, now_ps)
     if reads & OBJECT:
         view.object, view.owner, view.requests = obj, other, miss.requests
         view.object_bytes, view.test_ps = object_bytes(s)[obj], test_here_ps(s, me, obj)
@@ -80,18 +86,18 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
         view.send_ps, view.receive_ps, view.flight_ps = fetch_ps(s, me, obj)
     if reads & WANTED:
         show_fetch(s, view, me, obj)
-    _show_self(s, view, me, now_ps, reads)
+    show_self(s, view, me, now_ps, reads)
 
 
 @kernel
-def _show_load(s: Run, view: View, peer_row: int, now_ps: int) -> None:
+def show_load(s: Run, view: View, peer_row: int, now_ps: int) -> None:
     """What this PE knows of the load of another, and how old that is."""
     view.in_flight = peer_rows(s)[peer_row].in_flight
     view.known_load, view.age_ps = known_load(s, peer_row), age_ps(s, peer_row, now_ps)
 
 
 @kernel
-def _show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
+def show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
     """What a PE knows of itself, and what chance gives it."""
     pe = pes(s)[me]
     if groups & SELF:

@@ -10,7 +10,17 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import BEGIN, DISPATCH, NONE, SAMPLED, UNPACK, Row, Run
+from simmpp.engine.arrays.records import (
+    BEGIN,
+    DISPATCH,
+    NONE,
+    SAMPLED,
+    SLEEP,
+    UNPACK,
+    WOKEN,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
@@ -32,13 +42,12 @@ from simmpp.engine.pe.pace import end_of_go, pace_of, paced_ps
 from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
+from simmpp.engine.pe.talking import get_on, hear, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
 from simmpp.machine.topology import hops
-
-SLEEP = -1
 
 
 @kernel
@@ -47,33 +56,38 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
 
     Returns the time of the PE's next instant in picoseconds, or SLEEP until a message arrives. The
     record's REPORT fields then hold the phase of that instant, whether the message was consumed
-    and the number of messages in the outbox.
+    and the number of messages in the outbox. With phase WOKEN the PE sleeps as well: a message
+    that arrives before that time wakes it, and there is no such instant any more.
     """
     s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
     if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
         sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
+    if phase == WOKEN and message == NONE:
+        wake(s, me, now_ps)
+        phase = DISPATCH
     if phase == DISPATCH:
         next_ps = dispatch(s, me, message == NONE, now_ps)
     # What was sent departs by now; a dispatch that sent nothing took no time, so the next activity
     # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
-        next_ps = _begin(s, me, message, now_ps)
-    pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
+        next_ps = _begin(s, me, phase, message, now_ps)
+    if s.phase != WOKEN:
+        pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
         raise OverflowError("the clock")
     return next_ps
 
 
 @kernel
-def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
+def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     """The last activity has ended: receive, compute or sleep."""
     pe = pes(s)[me]
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
     if message == NONE and pe.n_ready == 0:
-        return SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
     s.activities += 1
     s.phase = DISPATCH
     if message != NONE:
@@ -112,6 +126,10 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
     clock_ps = answer(s, me, message, clock_ps)
+    if m.kind == USER:
+        clock_ps = hear(s, me, message, clock_ps)
+    elif m.kind == OBJECT or m.kind == RAYS:
+        get_on(pe)
     s.received += 1
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
@@ -188,18 +206,26 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             finish_ray(s, me, ray)
     done = s.rays_done - done
     clock_ps = start_ps + end_of_go(s, me, cost_ps, tests, done, pace)
-    # Whatever follows the last of these rays was for others, which are finished later.
-    if done > 0:
-        s.last_ray_ps = max(s.last_ray_ps, clock_ps)
-    if s.logs:
-        note_compute(s, me, tests, done, now_ps, clock_ps)
-    if s.record_counters:
-        note_work(s, me, now_ps, start_ps, clock_ps)
-        note_load(s, me, clock_ps)
-        note_finished(s, done, clock_ps)
+    if tests > 0 or done > 0:
+        get_on(pe)
     pe.compute_ps += clock_ps - start_ps
     pe.communication_ps += s.probe_ps
+    _note_go(s, me, tests, done, now_ps, clock_ps)
     return clock_ps
+
+
+@kernel
+def _note_go(s: Run, me: int, tests: int, done: int, begin_ps: int, end_ps: int) -> None:
+    """A go at computing has made tests, and is done with rays."""
+    # Whatever followed the last of these rays was for others, which are finished later.
+    if done > 0:
+        s.last_ray_ps = max(s.last_ray_ps, end_ps)
+    if s.logs:
+        note_compute(s, me, tests, done, begin_ps, end_ps)
+    if s.record_counters:
+        note_work(s, me, begin_ps, begin_ps + s.probe_ps, end_ps)
+        note_load(s, me, end_ps)
+        note_finished(s, done, end_ps)
 
 
 @kernel

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from simmpp.common.files import Row
-from simmpp.methods.columns import NUMBERS, PACKED
+from simmpp.methods.columns import FURTHER, NUMBERS
 from simmpp.plot.curves import PART_COLOURS
 from simmpp.plot.plotly_panels import N_COLOURS
 from simmpp.report.page.figures.figure import styles_of
@@ -27,7 +27,7 @@ def depth_of(points: Points, limits: PointLimits) -> dict[str, Any]:
     titles = list(styles_of(profits))
     rows = [(number, row) for number, runs in enumerate(points.runs) for row in runs]
     # Of the paper's experiments some pack and have further columns, others do not.
-    packed = [name for name in PACKED if any(name in row for _, row in rows)]
+    packed = [name for name in FURTHER if any(name in row for _, row in rows)]
     return {
         "places": [_place(points, numbers[0]) for numbers in points.places],
         "values": {

@@ -13,7 +13,7 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
 from simmpp.common.folders import is_at_work, last_call
-from simmpp.methods.columns import COLUMNS, KEYS, METHOD, NUMBERS, PACKED
+from simmpp.methods.columns import COLUMNS, FURTHER, KEYS, METHOD, NUMBERS
 from simmpp.run import words
 from simmpp.run.record import read_record
 from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
@@ -26,8 +26,8 @@ from simmpp.sweeps.journal import FILE as JOURNAL
 from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.stopping import CORRECTED
 
-INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS, *PACKED}, {"fraction", "effective_fraction"}
-MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS, *PACKED}
+INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS, *FURTHER}, {"fraction", "effective_fraction"}
+MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS, *FURTHER}
 """A memory given in bytes has no fraction, a failed point no results, and a method does not know
 all of them."""
 
@@ -161,7 +161,7 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
 def further_of(rows: Sequence[Row]) -> tuple[str, ...]:
     """The columns of further keys, and the method where it changes."""
     names = rows[0] if rows else ()
-    further = tuple(name for name in names if name not in (*COLUMNS, *PACKED))
+    further = tuple(name for name in names if name not in (*COLUMNS, *FURTHER))
     return (*further, METHOD) if len({row[METHOD] for row in rows}) > 1 else further
 
 

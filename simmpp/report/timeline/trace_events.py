@@ -32,6 +32,7 @@ from simmpp.report.timeline.slices import (
 
 PS_PER_US = 10**6
 _NAMES = [f"{event} {kind}".rstrip() for event in SLICE_KINDS for kind in (*MESSAGE_KINDS, "")]
+_N = len(MESSAGE_KINDS) + 1
 _CATEGORY = {COMPUTE: "compute", IDLE: "idle"} | dict.fromkeys(COMMUNICATION, "communication")
 _CATEGORIES = [_CATEGORY.get(event, "") for event in range(len(SLICE_KINDS))]
 _COMPRESSION = 3
@@ -84,8 +85,8 @@ class TraceEvents:
         track = [f'"pid":{self._process},"tid":', _whole(rows["pe"] + 1), ',"ts":']
         return [
             '{"ph":"B",', *track, _us(rows["time_ps"]),
-            # Kind NONE, -1, is 4 modulo 5: the name without a kind, behind those of four kinds.
-            ',"name":"', pa.array(_NAMES).take(rows["event"] * 5 + rows["kind"] % 5),
+            # Kind NONE, -1, is the last modulo all: the name without a kind, behind those with one.
+            ',"name":"', pa.array(_NAMES).take(rows["event"] * _N + rows["kind"] % _N),
             '","cat":"', pa.array(_CATEGORIES).take(rows["event"]),
             '"', _arguments(rows), '},\n{"ph":"E",', *track, _us(rows["end_ps"]), "}",
         ]  # fmt: skip

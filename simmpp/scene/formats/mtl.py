@@ -1,4 +1,4 @@
-"""Wavefront MTL: the colour of each material, and whether it mirrors or lets light through.
+"""Wavefront MTL: the colour of each material, and whether it mirrors, lets light through or shines.
 
 Source: Wavefront Technologies, "MTL Material Format", Advanced Visualizer manual, 5.
 """
@@ -17,6 +17,7 @@ from simmpp.common.errors import SceneError
 from simmpp.common.units import shown
 from simmpp.scene.formats.colours import as_bytes, matt, of_textures
 from simmpp.scene.formats.text import decoded, named
+from simmpp.scene.nff_words import LARGEST
 from simmpp.scene.packed import read_whole
 from simmpp.scene.scene import Material, Vector
 
@@ -34,6 +35,7 @@ class Surface(NamedTuple):
     shine: float = 1.0
     transmittance: float = 0.0
     ior: float = 1.0
+    emission: Vector = (0.0, 0.0, 0.0)
 
     def material(self, colour: Vector) -> Material:
         """With its own colour if it has one, else with ``colour``."""
@@ -108,6 +110,7 @@ def _surface(said: dict[str, list[str]]) -> Surface:
         shine if shine and shine > 0 and ks else 1.0,
         transmittance,
         ior if ior and ior > 0 and transmittance else 1.0,
+        _emission(said.get("ke")),
     )
 
 
@@ -118,6 +121,21 @@ def _number(said: dict[str, list[str]], keyword: str) -> float | None:
     except (KeyError, IndexError, ValueError):
         return None
     return number if math.isfinite(number) else None
+
+
+def _emission(words: Sequence[str] | None) -> Vector:
+    """Three numbers, or one for all three, however bright; black for what is none.
+
+    Source: P. Bourke, "MTL material format": the extension Ke.
+    """
+    try:
+        shares = list(map(float, (words or ())[:3]))
+    except ValueError:
+        shares = []
+    if len(shares) not in (1, 3) or not all(0 <= share <= LARGEST for share in shares):
+        return 0.0, 0.0, 0.0
+    red, green, blue = (shares * 3)[:3]
+    return red, green, blue
 
 
 def _mean(colour: Vector | None) -> float:

@@ -227,6 +227,12 @@ class Refraction(_Part):
     ior: Annotated[float, Field(ge=0)] = 1.5
 
 
+class Emission(_Part):
+    """How much brighter than its factor a material shines."""
+
+    emissive_strength: Annotated[float, Field(ge=0)] = 1.0
+
+
 class MaterialExtensions(_Part):
     """What a material's extensions say."""
 
@@ -235,6 +241,7 @@ class MaterialExtensions(_Part):
     )
     transmission: Transmission = Field(default=Transmission(), alias="KHR_materials_transmission")
     refraction: Refraction = Field(default=Refraction(), alias="KHR_materials_ior")
+    emission: Emission = Field(default=Emission(), alias="KHR_materials_emissive_strength")
 
 
 class Surface(_Part):
@@ -243,6 +250,8 @@ class Surface(_Part):
     name: str | None = None
     alpha_mode: str = "OPAQUE"
     pbr_metallic_roughness: MetallicRoughness = MetallicRoughness()
+    emissive_factor: Vec3 = [0.0, 0.0, 0.0]
+    emissive_texture: Any = None
     extensions: MaterialExtensions = MaterialExtensions()
 
     @property

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from simmpp.scene.gltf.document import item
 from simmpp.scene.gltf.schema import Document, Refraction, SpecularGlossiness, Surface
+from simmpp.scene.nff_words import LARGEST
 from simmpp.scene.scene import Floats, Material, Vector
 
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.3
@@ -25,7 +28,8 @@ def material(document: Document, index: int | None, colours: Floats | None) -> M
     ``colours`` of the vertices (n, 3 or 4) count where it names no material: their mean.
     """
     if index is not None:
-        return _of_surface(item(document.materials, index, "materials"))
+        surface = item(document.materials, index, "materials")
+        return replace(_of_surface(surface), emission=_emission(surface))
     if colours is None:
         return Material()
     red, green, blue = _steps(colours[:, :3]).mean(axis=0) / 255
@@ -52,6 +56,16 @@ def _of_surface(surface: Surface) -> Material:
     ior = surface.extensions.refraction.ior or Refraction().ior
     straight_on = ((ior - 1) / (ior + 1)) ** 2
     return Material(colour, 1 - transmitted, straight_on, transmittance=transmitted, ior=ior)
+
+
+def _emission(surface: Surface) -> Vector:
+    """What it shines by itself; where only a texture says where, nothing."""
+    strength = surface.extensions.emission.emissive_strength
+    shares = np.array(surface.emissive_factor) * min(strength, LARGEST)
+    if surface.emissive_texture is not None or not (np.abs(shares) <= LARGEST).all():
+        return 0.0, 0.0, 0.0
+    red, green, blue = np.maximum(shares, 0.0).tolist()
+    return red, green, blue
 
 
 def textured(document: Document) -> list[str]:

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from simmpp.methods.columns import NUMBERS, PACKED
+from simmpp.methods.columns import FURTHER, NUMBERS
 from simmpp.sweeps.matching import extremes, matched, percent
 
 Cells = Mapping[str, str]
 """A line of a CSV file, as it is written."""
 
-EXACT_COLUMNS = ("effective_fraction", *NUMBERS, *PACKED, "error")
+EXACT_COLUMNS = ("effective_fraction", *NUMBERS, *FURTHER, "error")
 """Columns of ``results.csv`` that must be equal unless tolerances are given."""
 GUARDED = ("time_profit", "message_profit", "speedup", "efficiency")
 """Columns of ``profits.csv`` that a tolerance may be given for."""

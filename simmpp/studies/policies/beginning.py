@@ -19,7 +19,9 @@ from simmpp.policy import Policy, hook
 #   v.memory[0] to [7]    yours to write, of this PE, 0 at the start
 #   v.random              a new random number from 0 to 2**63 - 1
 #   v.patience            your own numbers, declared below, set in the configuration
-# `simmpp policy view` lists all of them.
+# `simmpp policy view` lists all of them. A policy may also have the hooks keep (what fetched
+# objects are worth), heard and idle (messages of its own, times to be woken at): see the package's
+# policy/README.md.
 
 
 @hook

@@ -64,7 +64,7 @@ def _same_on_all(
     cases: list[Case], plain: PlainHooks, tick: Callable[[], None]
 ) -> Iterator[Finding]:
     """The three runs of each machine, until they differ or starve."""
-    sent = asked = 0
+    sent = asked = said = dropped = 0
     for case in cases:
         try:
             runs = [_run(case, engine) for engine in ENGINES] + [_run(case, "simpy", plain)]
@@ -79,10 +79,14 @@ def _same_on_all(
                 return
         sent += expected["ray_messages"]
         asked += expected["objects_fetched"]
+        said += expected["user_messages"]
+        dropped += expected["user_dropped"]
         tick()
     yield Finding("no ray starves", True, f"on {len(cases)} random machines")
     yield Finding("one result", True, "compiled, in the SimPy engine, and as plain Python")
-    yield Finding("what it does", True, f"{sent} messages of rays, {asked} objects fetched")
+    did = f"{sent} messages of rays, {asked} objects fetched"
+    own = f", {said} messages of its own ({dropped} more than may be)" if said or dropped else ""
+    yield Finding("what it does", True, did + own)
 
 
 def _difference(one: dict[str, int], other: dict[str, int]) -> str:

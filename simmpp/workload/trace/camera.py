@@ -24,8 +24,8 @@ def primary_rays(camera: Camera, picture: Picture, frame: Frame) -> tuple[Floats
     The upper and lower edge of the picture lie at +-tan(angle / 2), the others as far away as
     makes pixels squares; the first row is the top one.
     """
-    forward, right, up = _basis(camera, frame)
-    reach = _tangent(camera.angle_degrees)
+    forward, right, up = basis(camera, frame)
+    reach = tangent(camera.angle_degrees)
     rows, columns = picture.pixels
     across = (reach * _steps(columns, rows, picture))[None, :, None] * right
     down = (reach * -_steps(rows, rows, picture))[:, None, None] * up
@@ -40,7 +40,8 @@ def _steps(n: int, rows: int, picture: Picture) -> Floats:
     return (2.0 * np.arange(n) + 1.0 - n) / rows
 
 
-def _basis(camera: Camera, frame: Frame) -> tuple[Floats, Floats, Floats]:
+def basis(camera: Camera, frame: Frame) -> tuple[Floats, Floats, Floats]:
+    """Forward, right and up, of length 1; SceneError for a camera that sees nothing."""
     eye, at = frame.points(np.array([camera.eye, camera.at]))
     up = np.array(camera.up, dtype=np.float64)
     if not (np.abs([eye, at, up]) < FAR).all():
@@ -66,7 +67,7 @@ def _lengths(vectors: Floats) -> Floats:
     return lengths
 
 
-def _tangent(angle_degrees: float) -> float:
+def tangent(angle_degrees: float) -> float:
     """tan(angle / 2) to 12 digits: libraries differ in the last one."""
     if not 0.0 < angle_degrees < 180.0:
         raise SceneError(f"the camera's angle is {angle_degrees}, expected 0 < degrees < 180")

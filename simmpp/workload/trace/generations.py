@@ -16,14 +16,16 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import SceneError
 from simmpp.scene.scene import Scene, Vector
-from simmpp.workload.picture import Picture
+from simmpp.workload.picture import PATH, Picture
 from simmpp.workload.trace.camera import FAR, primary_rays
 from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.frame import Frame
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
+from simmpp.workload.trace.path.generations import drawn_rays, next_paths
+from simmpp.workload.trace.path.rules import Paths, paths_of
 from simmpp.workload.trace.ray_batch import RayBatch, unwritten
-from simmpp.workload.trace.surface import Surface, faces, reflected, refracted, surface_at
+from simmpp.workload.trace.surface import Surface, added, faces, reflected, refracted, surface_at
 from simmpp.workload.trace.vectors import dot, minus, normalised, vector
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW
 
@@ -42,8 +44,13 @@ class Spawning:
     max_depth: int
 
 
-def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -> Spawning:
+Rules = Spawning | Paths
+
+
+def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -> Rules:
     """The rays that ``picture`` asks for and ``scene`` has a use for."""
+    if picture.render == PATH:
+        return paths_of(scene, picture, frame, geometry)
     lights = np.array(
         [light.position for light in scene.lights if picture.shadows], dtype=np.float64
     )
@@ -60,6 +67,8 @@ def spawning(scene: Scene, picture: Picture, frame: Frame, geometry: Geometry) -
 
 def first_generation(scene: Scene, picture: Picture, frame: Frame) -> RayBatch:
     """The primary rays."""
+    if picture.is_drawn:
+        return drawn_rays(scene, picture, frame, np.arange(picture.n_roots, dtype=np.int32))
     eye, directions = primary_rays(scene.camera, picture, frame)
     n = len(directions)
     return RayBatch(
@@ -69,6 +78,7 @@ def first_generation(scene: Scene, picture: Picture, frame: Frame) -> RayBatch:
         limits=np.full(n, np.inf),
         sources=np.full(n, -1, dtype=np.int32),
         parents=np.full(n, -1, dtype=np.int32),
+        roots=np.arange(n, dtype=np.int32),
     )
 
 
@@ -77,7 +87,7 @@ def children(
     rays: RayBatch,
     hits: NDArray[np.int32],
     distances: Floats,
-    rules: Spawning,
+    rules: Rules,
     depth: int,
     first: int,
 ) -> tuple[RayBatch, NDArray[np.int32]]:
@@ -86,6 +96,8 @@ def children(
     ``distances`` are normalised. The rays are of ``depth``, the first has number ``first``. Rays
     at the greatest depth spawn shadow rays only.
     """
+    if isinstance(rules, Paths):
+        return next_paths(geometry, rays, hits, distances, rules, depth, first)
     deeper = depth < rules.max_depth
     reflection, refraction = rules.reflection and deeper, rules.refraction and deeper
     surfaces = hits[(rays.kinds != SHADOW) & (hits >= 0)]
@@ -119,7 +131,7 @@ def _spawn(
     for i in range(len(hits)):
         if rays.kinds[i] == SHADOW or hits[i] < 0:
             continue
-        hit, before = hits[i], used
+        hit, root, before = hits[i], rays.roots[i], used
         ray = ray_of(rays.origins, rays.directions, i)
         opaque = not transmits[hit]
         surface = surface_at(
@@ -127,49 +139,32 @@ def _spawn(
         )
         # In this order siblings are numbered; shading counts on shadow rays to be the last.
         if reflection and reflects[hit]:
-            used = _add(
-                new, used, REFLECTED, first + i, hit, surface, reflected(ray, surface), np.inf
-            )
+            direction = reflected(ray, surface)
+            used = added(new, used, REFLECTED, first + i, root, hit, surface, direction, np.inf)
         if refraction and transmits[hit]:
             passes, direction = refracted(ray, surface, ior[hit])
             if passes:
-                used = _add(new, used, REFRACTED, first + i, hit, surface, direction, np.inf)
+                used = added(new, used, REFRACTED, first + i, root, hit, surface, direction, np.inf)
         for k in range(len(lights)):
-            used = _add_shadow(new, used, first + i, hit, surface, vector(lights, k))
+            used = _add_shadow(new, used, first + i, root, hit, surface, vector(lights, k))
         counts[i] = used - before
     return used
 
 
 @kernel
-def _add(
+def _add_shadow(
     new: RayBatch,
     used: int,
-    kind: int,
     parent: int,
+    root: int,
     source: int,
     surface: Surface,
-    direction: Vector,
-    limit: float,
-) -> int:
-    """Append one ray that leaves ``surface``; the new number of rays."""
-    origin, ahead = new.origins[used], new.directions[used]
-    outwards = dot(surface.outside, direction) > 0.0
-    origin[0], origin[1], origin[2] = surface.point
-    ahead[0], ahead[1], ahead[2] = direction
-    new.kinds[used], new.limits[used], new.parents[used] = kind, limit, parent
-    # Without this a ray could hit the surface it leaves: its origin is rounded to before or behind.
-    # Glass and meshes may be hit again; there T_MIN has to keep the two apart.
-    new.sources[used] = source if surface.flat or (surface.convex and outwards) else -1
-    return used + 1
-
-
-@kernel
-def _add_shadow(
-    new: RayBatch, used: int, parent: int, source: int, surface: Surface, light: Vector
+    light: Vector,
 ) -> int:
     """Append a shadow ray, unless the surface faces away from the light."""
     to_light = minus(light, surface.point)
     if not faces(surface, to_light):
         return used
     distance = math.sqrt(dot(to_light, to_light))
-    return _add(new, used, SHADOW, parent, source, surface, normalised(to_light), distance)
+    direction = normalised(to_light)
+    return added(new, used, SHADOW, parent, root, source, surface, direction, distance)

@@ -25,6 +25,8 @@ class RayBatch(NamedTuple):
     """(n,) int32: the object that the ray leaves for good, convex and opaque; else -1."""
     parents: NDArray[np.int32]
     """(n,) int32: number of the parent; -1 for primary rays."""
+    roots: NDArray[np.int32]
+    """(n,) int32: number of the primary ray at the root of the ray's tree."""
 
     def part(self, start: int, stop: int) -> RayBatch:
         """Rays start ... stop - 1."""
@@ -40,6 +42,7 @@ def unwritten(n: int) -> RayBatch:
         limits=np.empty(n),
         sources=np.empty(n, np.int32),
         parents=np.empty(n, np.int32),
+        roots=np.empty(n, np.int32),
     )
 
 

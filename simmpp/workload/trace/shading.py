@@ -14,10 +14,11 @@ from PIL import Image
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.files import replaced
 from simmpp.scene.scene import Scene, Vector
-from simmpp.workload.picture import Picture
+from simmpp.workload.picture import CORNERS, PATH, Picture
 from simmpp.workload.trace.exact import ray_of
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
+from simmpp.workload.trace.path.radiance import light_of_roots, picture_of_roots
 from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.trace.replay import Traced, recorded_generations, traced
 from simmpp.workload.trace.surface import Surface, faces, reflected, surface_at
@@ -68,6 +69,8 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
 
     A ray whose hit is not the recorded one has lost its children: it shows its ambient light.
     """
+    if traced.picture.render == PATH:
+        return shade_paths(traced, hits)
     workload, lighting = traced.workload, _lighting(traced)
     colours = np.zeros((workload.n_rays, 3))
     as_recorded, first_shadows = hits == workload.hits, _first_shadows(workload)
@@ -80,8 +83,29 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
             geometry, lighting, rays, start, hits, as_recorded, distances, shadows, work, colours
         )
     _gather(colours, workload.kinds, workload.parents, hits, as_recorded, lighting.materials)
-    pixels = _pixels(colours, traced.picture)
+    return in_bytes(_pixels(colours, traced.picture))
+
+
+def in_bytes(pixels: Floats) -> NDArray[np.uint8]:
+    """Red, green and blue from 0 to 1 in 256 steps; what is brighter is cut off."""
     return np.rint(255 * np.clip(pixels, 0.0, 1.0)).astype(np.uint8)
+
+
+def light(scene: Scene, picture: Picture, workload: Workload) -> Floats:
+    """Red, green and blue of each pixel of traced paths, not cut off: (rows, columns, 3) float64.
+
+    Raises WorkloadError if the workload is not of this scene and picture.
+    """
+    replayed = traced(scene, picture, workload)
+    of_roots = light_of_roots(replayed, workload.hits.copy())
+    return picture_of_roots(of_roots, workload.picture, workload.samples)
+
+
+def shade_paths(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
+    """The same of traced paths."""
+    workload = traced.workload
+    of_roots = light_of_roots(traced, hits)
+    return in_bytes(picture_of_roots(of_roots, workload.picture, workload.samples))
 
 
 def _first_shadows(workload: Workload) -> Ints:
@@ -201,10 +225,9 @@ def _gather(
 
 
 def _pixels(colours: Floats, picture: Picture) -> Floats:
-    """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners."""
-    rows, columns = picture.shape
-    samples = colours[: rows * columns].reshape(rows, columns, 3)
-    if picture.samples == "centres":
-        return samples
+    """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners or samples."""
+    if picture.samples != CORNERS:
+        return picture_of_roots(colours[: picture.n_roots], picture.shape, picture.passes)
+    samples = colours[: picture.n_roots].reshape(*picture.shape, 3)
     mean: Floats = (samples[:-1, :-1] + samples[:-1, 1:] + samples[1:, :-1] + samples[1:, 1:]) / 4
     return mean

@@ -12,6 +12,7 @@ from simmpp.scene.scene import Vector
 from simmpp.workload.trace.exact import Floats, Ray, Row, hit_object, row_of
 from simmpp.workload.trace.geometry import Shapes
 from simmpp.workload.trace.itineraries import Work
+from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.trace.vectors import cross, dot, minus, moved, normalised, times, vector
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE
 
@@ -63,6 +64,31 @@ def surface_at(
     flat, convex = opaque and kind == POLYGON, opaque and kind in (SPHERE, CONE)
     normal = times(side, outside)
     return Surface(point, outside, normal, times(lit, outside), entering, flat, convex)
+
+
+@kernel
+def added(
+    new: RayBatch,
+    used: int,
+    kind: int,
+    parent: int,
+    root: int,
+    source: int,
+    surface: Surface,
+    direction: Vector,
+    limit: float,
+) -> int:
+    """Append one ray that leaves ``surface``; the new number of rays."""
+    origin, ahead = new.origins[used], new.directions[used]
+    outwards = dot(surface.outside, direction) > 0.0
+    origin[0], origin[1], origin[2] = surface.point
+    ahead[0], ahead[1], ahead[2] = direction
+    new.kinds[used], new.limits[used] = kind, limit
+    new.parents[used], new.roots[used] = parent, root
+    # Without this a ray could hit the surface it leaves: its origin is rounded to before or behind.
+    # Glass and meshes may be hit again; there T_MIN has to keep the two apart.
+    new.sources[used] = source if surface.flat or (surface.convex and outwards) else -1
+    return used + 1
 
 
 @kernel

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -22,7 +25,7 @@ from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import Frame, frame_of
-from simmpp.workload.trace.generations import children, first_generation, spawning
+from simmpp.workload.trace.generations import Rules, children, first_generation, spawning
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
 from simmpp.workload.trace.ray_batch import RayBatch, joined
@@ -37,6 +40,8 @@ MOST_RAYS = 2**31 - 1
 Number = TypeVar("Number", bound=np.generic)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
+Run = Callable[..., Iterable[Any]]
+"""Maps a function on lists, as ``map`` does."""
 
 
 class Recorded(NamedTuple):
@@ -55,11 +60,22 @@ class Recorded(NamedTuple):
     """The itineraries, one after the other."""
 
 
+class Tracing(NamedTuple):
+    """What all batches of a picture read."""
+
+    geometry: Geometry
+    proposer: Intersector
+    rules: Rules
+    name: str
+    """The scene's, for errors."""
+
+
 def trace(
     scene: Scene,
     picture: Picture,
     progress: Progress | None = None,
     intersector: Callable[[Geometry], Intersector] = Intersector,
+    threads: int | None = None,
 ) -> Workload:
     """All rays of ``picture`` with their hits and itineraries.
 
@@ -67,6 +83,7 @@ def trace(
     ----------
     progress : called after each batch with the rays done and the rays known so far
     intersector : makes the proposals; the workload does not depend on them
+    threads : None for as many as there are cores; the workload does not depend on them
 
     Raises
     ------
@@ -79,34 +96,70 @@ def trace(
     require_kind("picture", picture, Picture)
     check_scene(scene)
     picture = picture.of(scene)
-    rows, columns = picture.shape
-    _require_numbers(rows * columns, scene.name)
-    _require_memory(rows * columns, scene.name)
+    _require_numbers(picture.n_roots, scene.name)
+    _require_memory(picture.n_roots, scene.name)
     frame = frame_of(scene)
     geometry = flatten(scene, frame)
     rules = spawning(scene, picture, frame, geometry)
+    tracing = Tracing(geometry, intersector(geometry), rules, scene.name)
     rays = first_generation(scene, picture, frame)
-    proposer = intersector(geometry)
+    with _threads(threads) as run:
+        batches = _recorded(tracing, rays, run, progress)
+    del rays
+    return _workload(scene, picture, geometry, frame, batches)
+
+
+@contextmanager
+def _threads(threads: int | None) -> Iterator[Run]:
+    """What maps a function on batches, in order: this thread, or as many as asked for."""
+    if threads is None:
+        only = getattr(os, "sched_getaffinity", None)
+        threads = len(only(0)) if only else os.cpu_count() or 1
+    if threads == 1:
+        yield map
+        return
+    pool = ThreadPoolExecutor(threads)
+    try:
+        yield pool.map
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _recorded(
+    tracing: Tracing, rays: RayBatch, run: Run, progress: Progress | None = None
+) -> list[Recorded]:
+    """What is recorded of ``rays`` and of all that they spawn, generation by generation."""
     batches: list[Recorded] = []
     start = depth = 0
     while len(rays.kinds):
         depth += 1
         known = end = start + len(rays.kinds)
+        lows = range(start, end, BATCH)
+        parts = [rays.part(low - start, low - start + BATCH) for low in lows]
+        work = partial(_of_batch, tracing, depth)
         spawned = []
-        for low in range(start, end, BATCH):
-            part = rays.part(low - start, low - start + BATCH)
-            hits, distances, n_tests, objects = _intersected(geometry, proposer, part)
-            young, n_children = children(geometry, part, hits, distances, rules, depth, low)
+        # Where there is one batch only, no other thread has anything to do.
+        for low, (batch, young) in zip(
+            lows, (run if len(parts) > 1 else map)(work, parts, lows), strict=True
+        ):
             spawned.append(young)
+            batches.append(batch)
             known += len(young.kinds)
-            _require_numbers(known, scene.name)
-            batches.append(
-                Recorded(part.kinds, part.parents, n_children, hits, distances, n_tests, objects)
-            )
+            _require_numbers(known, tracing.name)
             if progress:
-                progress(low + len(part.kinds), known)
+                progress(low + len(batch.kinds), known)
+        del parts
         start, rays = end, joined(spawned)
-    return _workload(scene, picture, geometry, frame, batches)
+    return batches
+
+
+def _of_batch(tracing: Tracing, depth: int, rays: RayBatch, low: int) -> tuple[Recorded, RayBatch]:
+    """A batch whose first ray has number ``low``, and the rays that it spawns."""
+    geometry, proposer, rules, _ = tracing
+    hits, distances, n_tests, objects = _intersected(geometry, proposer, rays)
+    young, n_children = children(geometry, rays, hits, distances, rules, depth, low)
+    recorded = rays.kinds, rays.parents, n_children, hits, distances, n_tests, objects
+    return Recorded(*recorded), young
 
 
 def _require_numbers(n_rays: int, name: str) -> None:
@@ -143,7 +196,6 @@ def _workload(
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, itineraries = map(_emptied, lists)
-    rows, columns = picture.shape
     objects = columns_of(scene)
     bounds = boxes_of(objects, frame.origin)
     return frozen(
@@ -153,7 +205,7 @@ def _workload(
             picture=picture.shape,
             kinds=kinds,
             parents=parents,
-            child_offsets=np.cumsum(np.insert(n_children, 0, rows * columns), dtype=np.int32),
+            child_offsets=np.cumsum(np.insert(n_children, 0, picture.n_roots), dtype=np.int32),
             pixels=pixels_of(parents),
             hits=hits,
             hit_distances=frame.scene_lengths(distances),
@@ -164,6 +216,7 @@ def _workload(
             object_triangles=geometry.n_triangles,
             object_bytes=sizes_on_the_wire(objects),
             object_centroids=frame.rounded(bounds.mean(axis=1)),
+            samples=picture.passes,
         )
     )
 

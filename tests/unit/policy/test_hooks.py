@@ -163,3 +163,18 @@ def test_an_object_of_python_is_swept_in_this_process_alone() -> None:
     assert rows["error"].isna().all()
     with pytest.raises(ConfigError, match="policy 'own' is an object of Python"):
         simmpp.sweep(config, workers=2)
+
+
+def tell_the_next(v: View) -> int:
+    v.other = (v.me + 1) % v.nb
+    return 0
+
+
+def test_messages_of_its_own_have_columns_where_a_policy_sends_any() -> None:
+    own = Policy("talks", ask=lambda v: 1, idle=tell_the_next)
+    config = {"scene": "tetra:2", "picture": {"resolution": 8}, "processors": 4}
+    rows = simmpp.sweep(config | {"policy": ["object", own], "memory": {"fraction": 1}}).rows
+    said = dict(zip(rows["policy"], rows["user_messages"], strict=True))
+    assert said["object"] == 0 < said["talks"]
+    assert set(rows["messages"] - rows["user_messages"]) == {0}
+    assert "user_messages" not in simmpp.sweep(config | {"policy": "object"}).rows

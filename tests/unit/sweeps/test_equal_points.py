@@ -6,7 +6,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from simmpp.config.config import config_from_mapping, with_key
-from simmpp.methods.columns import NUMBERS, PACKED
+from simmpp.methods.columns import FURTHER, NUMBERS
 from simmpp.methods.simulation import integers
 from simmpp.report.page.folder import read_folder
 from simmpp.run.inputs import workload_of
@@ -45,7 +45,7 @@ def test_where_everything_is_in_memory_all_policies_are_one() -> None:
             config = with_key(config, "memory.fraction", each["fraction"])
             point = make_point(config, workload_of(config))
             (alone,) = (run for run in run_point(point) if run.parameters.title == each["policy"])
-            assert integers(alone.result) == {name: each[name] for name in (*NUMBERS, *PACKED)}
+            assert integers(alone.result) == {name: each[name] for name in (*NUMBERS, *FURTHER)}
 
 
 def test_what_is_kept_and_dealt_stands_in_rows_as_it_was_written(tmp_path: Path) -> None:

@@ -196,6 +196,24 @@ def test_mirrors_and_glass(tmp_path: Path, lines: str) -> None:
     assert finish == pytest.approx(FINISHES[lines], abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("line", "emission"),
+    [
+        ("Ke 15 12.5 7", (15, 12.5, 7)),
+        ("Ke 3", (3, 3, 3)),
+        ("Ke", (0, 0, 0)),
+        ("Ke bright", (0, 0, 0)),
+        ("Ke 1 -1 1", (0, 0, 0)),
+        ("Ke nan 1 1", (0, 0, 0)),
+        ("Ke spectral lamp.rfl 1", (0, 0, 0)),
+    ],
+)
+def test_what_shines(tmp_path: Path, line: str, emission: tuple[float, ...]) -> None:
+    (tmp_path / "m.mtl").write_text(f"newmtl a\nKd 1 0 0\n{line}\n")
+    scene = read(tmp_path, "a.obj", f"mtllib m.mtl\n{TRIANGLE}usemtl a\n{FACE}".encode())
+    assert [material.emission for material in scene.materials] == [emission]
+
+
 def test_glass_may_have_the_colours_of_vertices(tmp_path: Path) -> None:
     (tmp_path / "m.mtl").write_text(f"newmtl a\n{GLASS}")
     painted = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\n"

@@ -52,6 +52,25 @@ def test_materials(found: Material, expected: Material) -> None:
     assert found.colour == pytest.approx(expected.colour, abs=1e-12)
 
 
+STRONG = {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}
+
+
+@pytest.mark.parametrize(
+    ("surface", "emission"),
+    [
+        ({}, (0, 0, 0)),
+        ({"emissiveFactor": [1, 0.5, 0]}, (1, 0.5, 0)),
+        ({"emissiveFactor": [1, 0.5, 0], "extensions": STRONG}, (4, 2, 0)),
+        ({"extensions": STRONG}, (0, 0, 0)),
+        ({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}, (0, 0, 0)),
+        ({"emissiveFactor": [-1, 1, 1]}, (0, 1, 1)),
+        ({"emissiveFactor": [1e300, 1, 1], "extensions": STRONG}, (0, 0, 0)),
+    ],
+)
+def test_what_shines(surface: dict[str, Any], emission: tuple[float, ...]) -> None:
+    assert painted(**surface).emission == emission
+
+
 @pytest.mark.parametrize(
     ("surface", "reflects"),
     [
