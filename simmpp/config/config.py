@@ -29,7 +29,7 @@ from simmpp.machine.machine import TORUS, Machine
 from simmpp.machine.presets import Preset, layered
 from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.placement.placement import Memory
+from simmpp.placement.placement import Memory, island_of
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
@@ -214,9 +214,14 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     except ConfigError as error:
         key = ("machine", *error.where.split("."))
         raise misplaced(key, error.problem, point.places) from None
-    method = point.settings.method
-    if METHODS[method].knows_torus_alone and machine.topology != TORUS:
-        problem = f"value {method!r}: expected {SIMULATE} where the topology is {machine.topology}"
+    try:
+        island_of(point.settings.placement, point.processors)
+    except ConfigError as error:
+        raise misplaced(tuple(error.where.split(".")), error.problem, point.places) from None
+    method, islands = point.settings.method, point.settings.placement.islands
+    if METHODS[method].knows_torus_alone and (machine.topology != TORUS or islands > 1):
+        is_other = f"the topology is {machine.topology}" if islands == 1 else "there are islands"
+        problem = f"value {method!r}: expected {SIMULATE} where {is_other}"
         raise misplaced(("method",), problem, point.places)
     return point
 

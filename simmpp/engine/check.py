@@ -71,7 +71,9 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
         raise ConfigError(f"the placement is for {placement.processors} PEs, the machine has {nb}")
     n_replicas = len(placement.replica_objects)
     fits = {
-        "owners": len(placement.owners) == n_objects and _lie_below(placement.owners, nb),
+        "islands": placement.islands >= 1 and nb % placement.islands == 0,
+        "owners": len(placement.owners) == n_objects
+        and _lie_below(placement.owners, nb // max(placement.islands, 1)),
         "replica_offsets": is_cut(placement.replica_offsets, nb, 0, n_replicas),
         "replica_objects": _lie_below(placement.replica_objects, n_objects),
         "pixel_pes": len(placement.pixel_pes) == workload.n_primaries

@@ -108,7 +108,7 @@ def _sizes(
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
-    each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
+    each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
     pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
@@ -158,7 +158,7 @@ def _policy_views(
     """(1,) VIEW with what stays as it is in it; (nb,) for a policy with a memory."""
     nb = placement.processors
     views = np.zeros(nb if _remembers(parameters.rules) else 1, VIEW)
-    views["nb"], views["initial_load"] = nb, workload.n_primaries // nb
+    views["nb"], views["initial_load"] = placement.island, workload.n_primaries // nb
     for name in NUMBERS:
         views[name] = _in_rays(getattr(parameters, name), workload, placement)
     own = parameters.numbers
@@ -183,6 +183,7 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
     return {
         "processors": machine.processors,
+        "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
@@ -241,6 +242,8 @@ def _deal(state: State, placement: Placement) -> None:
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
     pes["first"] = NONE
+    pes["place"] = np.arange(placement.processors) % placement.island
+    pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
     for name in ("n_ready", "load", "settled_load", "sampled_load", "peak_rays"):
         pes[name] = n_pixels

@@ -28,7 +28,7 @@ class Method:
     uses_engine: bool = True
     """It runs an event loop."""
     knows_torus_alone: bool = False
-    """It has no meaning for machines whose PEs are joined otherwise."""
+    """It has no meaning for machines whose PEs are joined otherwise, or where they are islands."""
     most_seeds: int | None = 1
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
 

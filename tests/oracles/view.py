@@ -42,16 +42,17 @@ class Views(World):
         """What any hook of this PE sees when it decides about another."""
         known, age = self.known_load(pe.clock, pe, other)
         own = dict(zip(self.rules.parameters, self.policy.numbers, strict=True))
+        island = self.island_of(pe.number)
         return SimpleNamespace(
             now_ps=pe.clock,
-            me=pe.number,
-            nb=self.nb,
+            me=island.index(pe.number),
+            nb=len(island),
             load=pe.load,
             ready=len(pe.ready),
             held_bytes=self.held_bytes(pe),
             nothing_else=int(nothing_else),
             initial_load=self.workload.n_primaries // self.nb,
-            other=other,
+            other=island.index(other),
             known_load=known,
             age_ps=age,
             in_flight=pe.in_flight_to[other] if self.policy.load_info == "piggyback" else 0,
@@ -88,12 +89,12 @@ class Views(World):
         self, pe: PE, obj: int, unasked: int, nothing_else: bool, draws: bool
     ) -> View:
         """What ask is shown."""
-        owner = self.owners[obj]
+        owner = self.owner_of(pe.number, obj)
         view = self.view(pe, owner, nothing_else, draws)
-        view.object, view.owner, view.object_bytes = obj, owner, self.object_bytes[obj]
+        view.object, view.owner, view.object_bytes = obj, view.other, self.object_bytes[obj]
         cost_ps = intersection_ps(self.machine, self.workload, obj)
         view.test_ps = rounded(cost_ps / speed_of(self.machine, pe.number))
-        view.holders = sum(obj in each.resident for each in self.pes)
+        view.holders = sum(obj in self.pes[k].resident for k in self.island_of(pe.number))
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]
         view.send_ps, view.receive_ps, view.flight_ps = self.fetch_ps(pe, obj)
@@ -109,7 +110,7 @@ class Views(World):
 
     def fetch_ps(self, pe: PE, obj: int) -> tuple[int, int, int]:
         """Of a request, of the object, and of all that is in between."""
-        owner, machine = self.owners[obj], self.machine
+        owner, machine = self.owner_of(pe.number, obj), self.machine
         asked, fetched = machine.request_bytes, self.object_bytes[obj]
         sending, receipt = startups_ps(machine, pe.number, owner)
         ask_ps = sending + copy_ps(machine.pack[REQUEST], asked)

@@ -41,6 +41,9 @@ class World:
     def __post_init__(self) -> None:
         self.nb = self.placement.processors
         self.network = Network(self.machine)
+        pes, n_islands = list(range(self.nb)), self.placement.islands
+        cuts = [n * self.nb // n_islands for n in range(n_islands + 1)]
+        self.islands = [pes[i:j] for i, j in pairwise(cuts)]
         self.owners = [int(o) for o in self.placement.owners]
         self.object_bytes = [int(b) for b in self.workload.object_bytes]
         self.rays_left = self.workload.n_rays
@@ -58,7 +61,7 @@ class World:
 
     def new_pe(self, k: int) -> PE:
         """A PE before the start, its primary rays ready."""
-        resident = {o for o, owner in enumerate(self.owners) if owner == k}
+        resident = {o for o in range(len(self.owners)) if self.owner_of(k, o) == k}
         first, end = (int(i) for i in self.placement.replica_offsets[k : k + 2])
         resident |= {int(o) for o in self.placement.replica_objects[first:end]}
         if self.rules.all_resident:
@@ -66,6 +69,14 @@ class World:
         rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
         share = self.workload.n_primaries // self.nb
         return PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
+
+    def island_of(self, k: int) -> list[int]:
+        """The PEs of a PE's island."""
+        return next(island for island in self.islands if k in island)
+
+    def owner_of(self, k: int, obj: int) -> int:
+        """The PE that owns an object in the island of another."""
+        return self.island_of(k)[self.owners[obj]]
 
     def schedule(self, time: int, pe: PE, what: str) -> None:
         """Let a PE begin or dispatch at a time."""

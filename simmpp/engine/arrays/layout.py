@@ -94,7 +94,7 @@ ARRAYS = {
     "child_offsets": Array(I4),  # (n + 1,)
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
-    "owners": Array(I4),  # (N,)
+    "owners": Array(I4),  # (N,), in each island, counted from its first PE
     # PEs that hold each object for good (CSR); empty where the policy does not want to know.
     "holder_offsets": Array(I8),
     "holder_pes": Array(I4),
@@ -181,6 +181,7 @@ MACHINE = tuple(name for name, kind in get_type_hints(Machine).items() if kind i
 PARAMETERS = (
     *MACHINE,
     "processors",
+    "island",  # PEs of an island
     "n_objects",
     *PACE,
     "contends",  # links and ports serve one message at a time

@@ -19,6 +19,8 @@ PE = np.dtype(
     [
         ("first", "i4"),  # list of started ready rays, linked through RAY.next; NONE: empty
         ("last", "i4"),
+        ("base", "i4"),  # the first PE of its island
+        ("place", "i4"),  # its number in the island: base + place is the PE
         ("n_ready", "i8"),  # those and its pixels that are not started
         ("load", "i8"),  # rays held: ready + waiting
         ("settled_load", "i8"),  # load at the end of the last ended activity

@@ -28,7 +28,6 @@ from simmpp.engine.arrays.records import NONE, SINGLY, TWO, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,
-    owners,
     peer_rows,
     pes,
     rays,
@@ -39,6 +38,7 @@ from simmpp.engine.arrays.views import (
     unsent,
 )
 from simmpp.engine.pe.candidates import withdraw
+from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import drop_if_idle, is_holder, set_unasked
 from simmpp.engine.pe.peers import known_load
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
@@ -193,10 +193,11 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
 
 @kernel
 def _who_has(s: Run, me: int, obj: int, chosen: int) -> int:
-    """The PE that the policy has chosen, if it has the object for good; else the owner."""
-    if 0 <= chosen < s.processors and is_holder(s, chosen, obj):
-        return chosen
-    return owners(s)[obj]
+    """The PE of its island that the policy has chosen, if it has the object; else the owner."""
+    other = pes(s)[me].base + chosen
+    if 0 <= chosen < s.island and is_holder(s, other, obj):
+        return other
+    return owner_of(s, me, obj)
 
 
 @kernel

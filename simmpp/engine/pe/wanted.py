@@ -9,12 +9,12 @@ from simmpp.engine.arrays.views import (
     copy_costs,
     miss_rows,
     object_bytes,
-    owners,
     peer_rows,
     sendable,
 )
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import is_holder
 from simmpp.machine.messages import OBJECT, REQUEST
 from simmpp.policy.view import View
@@ -23,7 +23,7 @@ from simmpp.policy.view import View
 @kernel
 def fetch_ps(s: Run, me: int, obj: int) -> tuple[int, int, int]:
     """What sending the request costs, what receiving the object, and the time in between."""
-    costs, asked, owner = copy_costs(s), s.request_bytes, owners(s)[obj]
+    costs, asked, owner = copy_costs(s), s.request_bytes, owner_of(s, me, obj)
     n_bytes = object_bytes(s)[obj]
     send_ps = sending_ps(s, me, owner, REQUEST) + copy_ps(costs[PACK + REQUEST], asked)
     unpack_ps = copy_ps(costs[UNPACK + OBJECT], n_bytes)
