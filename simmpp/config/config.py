@@ -25,7 +25,7 @@ from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading
 from simmpp.config.settings import Settings
 from simmpp.machine.layers import Layers
-from simmpp.machine.machine import TORUS, Machine
+from simmpp.machine.machine import Machine
 from simmpp.machine.presets import Preset, layered
 from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
@@ -219,8 +219,7 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     except ConfigError as error:
         raise misplaced(tuple(error.where.split(".")), error.problem, point.places) from None
     method, islands = point.settings.method, point.settings.placement.islands
-    if METHODS[method].knows_torus_alone and (machine.topology != TORUS or islands > 1):
-        is_other = f"the topology is {machine.topology}" if islands == 1 else "there are islands"
+    if is_other := METHODS[method].lacks(machine, islands):
         problem = f"value {method!r}: expected {SIMULATE} where {is_other}"
         raise misplaced(("method",), problem, point.places)
     return point

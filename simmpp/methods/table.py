@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from simmpp.machine.machine import TORUS, Machine
 from simmpp.methods.analytical import analytical, analytical_measured
 from simmpp.methods.case import Case
 from simmpp.methods.simulation import simulation
@@ -28,9 +29,22 @@ class Method:
     uses_engine: bool = True
     """It runs an event loop."""
     knows_torus_alone: bool = False
-    """It has no meaning for machines whose PEs are joined otherwise, or where they are islands."""
+    """It has no meaning for machines whose PEs are joined otherwise or compute unevenly, or where
+    they are islands."""
     most_seeds: int | None = 1
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
+
+    def lacks(self, machine: Machine, islands: int) -> str:
+        """What it has no notion of, as a sentence goes on; empty if there is nothing."""
+        lacking = {
+            f"the topology is {machine.topology}": machine.topology != TORUS,
+            "there are islands": islands > 1,
+            "a machine has compute_startup, least_tests, speed, noise or straggler": (
+                machine.is_uneven
+            ),
+        }
+        found = (text for text, is_so in lacking.items() if is_so and self.knows_torus_alone)
+        return next(found, "")
 
 
 METHODS: dict[str, Method] = {
