@@ -67,7 +67,7 @@ def _longest_go_ps(workload: Workload, machine: Machine) -> float:
     """No go at computing takes longer: all of it, on the slowest PE, with lanes left empty."""
     test_ps = machine.test.of_objects(workload, np.float64).max(initial=0)
     cost_ps = total_compute_ps(workload, machine) + machine.least_tests * float(test_ps)
-    slowest = max(1 / min(speeds_of(machine.speed, machine.processors)), 1)
+    slowest = max(1 / min(speeds_of(machine.speed, machine.processors)), Fraction(1))
     factor = slowest * Fraction(machine.straggler.factor) * max(factors(machine.noise)) / ONE
     return machine.compute_startup_ps + cost_ps * float(factor)
 

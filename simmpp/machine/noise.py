@@ -39,5 +39,5 @@ def factors(noise: str) -> tuple[int, ...]:
     with localcontext(Context(prec=40)):
         half = [Decimal(sigma.numerator * z) / (sigma.denominator * 10**4) for z in _QUANTILES]
         raw = [z.exp() for z in (*(-z for z in reversed(half)), *half)]
-        mean = sum(raw) / len(raw)
+        mean = sum(raw, Decimal(0)) / len(raw)
         return tuple(int((ONE * each / mean).to_integral_value()) for each in raw)

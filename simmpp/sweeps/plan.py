@@ -62,8 +62,8 @@ class Plan:
         """Columns of ``results.csv``."""
         configs = (planned.point.config for planned in self.points)
         machines = (config.machine_for(config.processors) for config in configs)
-        policies = (planned.point.policy for planned in self.points)
-        uses = {use for of in (*policies, *machines) for use in of.uses}
+        uses = {use for planned in self.points for use in planned.point.policy.uses}
+        uses |= {use for machine in machines for use in machine.uses}
         return result_columns(self.further, uses)
 
     @property
