@@ -277,6 +277,21 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
     )
 
 
+def served(case: Case, service: str, seed: int) -> Case:
+    """The case where another serves, at costs of the same kind, from a stream of its own."""
+    rng, machine = np.random.default_rng((seed, 4)), case.machine
+    costs = (0, machine.latency_ps, machine.send_startup_ps, machine.probe_ps)
+    handoff_ps, get_startup_ps, completion_ps = (int(_pick(rng, costs)) for _ in range(3))
+    machine = replace(
+        machine,
+        service=service,
+        handoff_ps=handoff_ps,
+        get_startup_ps=get_startup_ps,
+        completion_ps=completion_ps,
+    )
+    return replace(case, machine=machine)
+
+
 def with_costs_of_today(machine: Machine, seed: int) -> Machine:
     """The machine, in some cases with one or all of what makes computing uneven.
 

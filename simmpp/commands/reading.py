@@ -34,24 +34,39 @@ def reading_command(name: str | None) -> None:
     say(_table("key", reading.lines))
 
 
-def print_reading(config: Config) -> None:
-    """Say what the reading sets in a configuration, and whether its costs are left out."""
-    name, costs, preset = config.reading.name, config.reading.costs, config.preset
+def print_reading(config: Config, presets: Iterable[str] = ()) -> None:
+    """Say what the reading sets in a configuration, and where its costs are left out.
+
+    ``presets`` are those of the other machines that there are.
+    """
+    name, costs = config.reading.name, config.reading.costs
     if lines := config.lines_of_reading:
         say()
         say(_table(f"reading {name} sets", lines))
-    if costs and preset not in costs:
-        say(f"reading {name} has costs for {', '.join(costs)}, none for {preset}: not set")
+    others = [preset for preset in (config.preset, *presets) if preset not in costs]
+    if costs and others:
+        none = ", ".join(dict.fromkeys(others))
+        say(f"reading {name} has costs for {', '.join(costs)}, none for {none}: not set")
 
 
 def print_readings_of_sweep(config: Config) -> None:
     """The same for each reading that a sweep has; what the sweep sets no reading does."""
     axes = config.axes
-    first = dict.fromkeys(axes, 0)
-    swept = [(name, axis) for name, axis in axes.items() if READING in keys_of(axis)]
-    chosen = [{**first, name: n} for name, axis in swept for n in range(len(axis))]
-    for numbers in chosen or [first]:
-        print_reading(point_at(config, axes, numbers))
+    for of_reading in _choices(config, READING):
+        numbers = [dict.fromkeys(axes, 0) | of | of_reading for of in _choices(config, "machine")]
+        machines = [point_at(config, axes, chosen) for chosen in numbers]
+        with_costs = (of for of in machines if of.preset in of.reading.costs)
+        print_reading(next(with_costs, machines[0]), [of.preset for of in machines])
+
+
+def _choices(config: Config, part: str) -> list[dict[str, int]]:
+    """The number of each choice of each axis that sets a part's keys."""
+    return [
+        {name: n}
+        for name, axis in config.axes.items()
+        if any(key.split(".")[0] == part for key in keys_of(axis))
+        for n in range(len(axis))
+    ] or [{}]
 
 
 def _table(heading: str, lines: Iterable[Line]) -> Fitting:

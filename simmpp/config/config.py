@@ -25,7 +25,7 @@ from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading
 from simmpp.config.settings import Settings
 from simmpp.machine.layers import Layers
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import POLLED, TORUS, Machine
 from simmpp.machine.presets import Preset, layered
 from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
@@ -218,11 +218,22 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
         island_of(point.settings.placement, point.processors)
     except ConfigError as error:
         raise misplaced(tuple(error.where.split(".")), error.problem, point.places) from None
-    method, islands = point.settings.method, point.settings.placement.islands
-    if is_other := METHODS[method].lacks(machine, islands):
-        problem = f"value {method!r}: expected {SIMULATE} where {is_other}"
+    method = point.settings.method
+    if METHODS[method].knows_papers_machine_alone and (other := _other(point, machine)):
+        problem = f"value {method!r}: expected {SIMULATE} where {other}"
         raise misplaced(("method",), problem, point.places)
     return point
+
+
+def _other(point: Config, machine: Machine) -> str:
+    """What the paper's model does not know of a point; empty if there is nothing."""
+    if machine.topology != TORUS:
+        return f"the topology is {machine.topology}"
+    if machine.service != POLLED:
+        return f"the service is {machine.service}"
+    if machine.is_uneven:
+        return "a machine has compute_startup, least_tests, speed, noise or straggler"
+    return "there are islands" if point.settings.placement.islands > 1 else ""
 
 
 def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) -> Config:

@@ -36,7 +36,7 @@ _SUFFIXES = (".yaml", ".yml")
 DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
 _NOT_IN_ONE: dict[str, tuple[str, ...]] = {
     # no costs, but choices
-    MACHINE: ("shape", "topology", "levels", "fat_tree", "contention", *UNLIKE),
+    MACHINE: ("shape", "topology", "levels", "fat_tree", "service", "contention", *UNLIKE),
     POLICY: ("name", "label", "file", "set"),  # a reading is no code
 }
 """Keys of a configuration that no reading sets."""

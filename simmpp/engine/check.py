@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simmpp.common.errors import ConfigError, WorkloadError
 from simmpp.common.validate import MOST_COUNT, require_whole, require_word
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import SERVICES, Machine
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.machine.uneven import check_unlike
@@ -58,6 +58,7 @@ def _check_machine(machine: Machine) -> None:
         elif not isinstance(value, str | dict):
             require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
     require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
+    require_word(f"machine {machine.name}: service", machine.service, SERVICES)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
     require_whole(f"machine {machine.name}: least_tests", machine.least_tests, 0)

@@ -20,6 +20,8 @@ COLUMNS = (
     "events",
 )
 """Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
+SERVICE_COLUMNS = ("service_ps",)
+"""A further one, in rows of sweeps on machines whose threads serve."""
 PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
 """Further ones, in rows of sweeps in which a policy packs."""
 USER_COLUMNS = ("user_messages", "user_dropped")

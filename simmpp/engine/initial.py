@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
 )
 from simmpp.engine.pe.pace import noise_array, pace_columns, pace_scalars
 from simmpp.engine.record.counters import first_width
@@ -32,13 +32,11 @@ from simmpp.engine.residency import (
     row_bytes,
 )
 from simmpp.engine.state import State
-from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import USER_COPIED_AS
-from simmpp.machine.noise import ONE, factors
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
-from simmpp.machine.uneven import total_speed
 from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters
@@ -77,7 +75,7 @@ def new_state(
         "record_tests": recording.tests,
         "record_counters": recording.counters,
         "record_hops": recording.hops,
-        "bin_width": first_width(_least_ps(workload, machine)),
+        "bin_width": first_width(least_ps(workload, machine)),
         "logs": recording.sink is not None,
     }
     scalars = {name: getattr(machine, name) for name in MACHINE}
@@ -94,14 +92,6 @@ def new_state(
     return state
 
 
-def _least_ps(workload: Workload, machine: Machine) -> int:
-    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
-    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
-    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
-    least = Fraction(factors(machine.noise)[0], ONE)
-    return floor(total_ps * least / total_speed(machine.speed, machine.processors))
-
-
 def _sizes(
     workload: Workload, placement: Placement, parameters: PolicyParameters, recording: Recording
 ) -> Sizes:
@@ -109,7 +99,8 @@ def _sizes(
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
+    known = nb * placement.island
+    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -135,7 +126,7 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    pack, unpack = copies(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -186,6 +177,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
@@ -241,7 +233,7 @@ def _deal(state: State, placement: Placement) -> None:
     """Give primary rays to the PEs of their pixels, in pixel order."""
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
-    pes["first"] = NONE
+    pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends

@@ -35,7 +35,7 @@ OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
 """In the order of COPIED_KINDS."""
-_WORDS = ("topology", "contention")
+_WORDS = ("topology", "service", "contention")
 UNLIKE = ("speed", "noise", "straggler")
 """What makes PEs, or moments, unlike others: no constants of a product."""
 _NAME = re.compile("[A-Za-z][A-Za-z0-9_-]{0,30}")
@@ -151,7 +151,7 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
         return given
 
     def words(self) -> dict[str, str]:
-        """The choices that are made: ``contention``, ``topology``."""
+        """The choices that are made: ``contention``, ``topology``, ``service``."""
         return {key: value for key, value in self if key in _WORDS and value is not None}
 
     def unlike(self) -> dict[str, Any]:

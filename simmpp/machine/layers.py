@@ -9,7 +9,7 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import in_words
 from simmpp.machine.constants import Constants
-from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Level
+from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Level
 from simmpp.machine.ranges import NO_RANGES, Known, Ranges, known_of
 from simmpp.machine.transfer import slower
 
@@ -32,7 +32,7 @@ class Layers:
     """As ``Constants.flat`` has them."""
     sources: dict[str, str] = field(default_factory=dict)
     """By the same keys."""
-    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS})
+    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS, "service": POLLED})
     """The choices."""
     unlike: dict[str, Any] = field(default_factory=dict)
     """``speed``, ``noise``, ``straggler``: each as the last layer that speaks of it says."""

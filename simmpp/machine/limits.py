@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import floor
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from simmpp.machine.machine import Machine
 from simmpp.machine.noise import ONE, factors
 from simmpp.machine.topology import topology_of
 from simmpp.machine.transfer import PS_PER_S, slower
-from simmpp.machine.uneven import bound_of, speeds_of
+from simmpp.machine.uneven import bound_of, speeds_of, total_speed
 from simmpp.workload.workload import Workload
 
 CLOCK_LIMIT_PS = 1 << 62
@@ -36,6 +37,14 @@ def total_compute_ps(workload: Workload, machine: Machine) -> int:
 def bound_ps(workload: Workload, machine: Machine) -> int:
     """T(1) / the sum of all PEs' speeds, rounded up: none can be faster, but by luck with noise."""
     return bound_of(total_compute_ps(workload, machine), machine.speed, machine.processors)
+
+
+def least_ps(workload: Workload, machine: Machine) -> int:
+    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
+    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
+    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
+    least = Fraction(factors(machine.noise)[0], ONE)
+    return floor(total_ps * least / total_speed(machine.speed, machine.processors))
 
 
 def check_counters(workload: Workload, machine: Machine) -> None:

@@ -39,6 +39,7 @@ Shape = Annotated[tuple[int, int, int], *only(is_shape, Expect(_SHAPE, _THREE, "
 
 
 TORUS, LEVELS, FAT_TREE = TOPOLOGY_NAMES = ("torus", "levels", "fat-tree")
+POLLED, THREAD, NIC = SERVICES = ("pe", "thread", "nic")
 MOST_LEVELS = 16
 
 
@@ -187,11 +188,11 @@ class Machine:
     """Fewer tests at one go take as long as that many of their mean cost, and their rays are
     finished at the end: the lanes of an accelerator."""
     speed: Speeds = ()
-    """Times as fast as others, whose speed is 1: tests and rays take what they cost / speed. By
-    PEs, or by shares of them in turn: {25%: 2} is the first quarter."""
+    """Tests and rays take what they cost / speed; that of others is 1. By PEs, or by shares of them
+    in turn: {25%: 2} is the first quarter."""
     noise: Noise = "0"
-    """Whenever a PE computes, that takes a factor near 1 as long, drawn with the seed: lognormal,
-    with a mean of 1; the noise is the deviation of its logarithm."""
+    """A go at computing takes a factor near 1 as long, drawn with the seed: lognormal, with a mean of
+    1; the noise is the deviation of its logarithm."""
     straggler: Straggler = NOBODY
     """A PE that is late for a while."""
     topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
@@ -203,6 +204,16 @@ class Machine:
     """Switches of the fat-tree; its links have the machine's bandwidth and hop latency."""
     port_gap_ps: Time = 0
     """With contention: a message keeps the ports of its PEs busy for that long at least."""
+    service: Annotated[str, *one_of(*SERVICES)] = POLLED
+    """Who answers requests: the PE when it polls, a thread beside it, or the network card, of whom
+    objects are got without the PE; the preset's when not given (see `machine.service`)."""
+    handoff_ps: Time = 0
+    """With a thread: the PE's cost of taking over a message that the thread has unpacked."""
+    get_startup_ps: Time = 0
+    """With nic: the PE's cost of starting a get, in place of sending a request."""
+    completion_ps: Time = 0
+    """With nic: the PE's cost of seeing what it has got, or what another has put into its memory,
+    in place of the receive startup."""
     contention: Literal["none", "links"] = "none"
     """What messages wait for: nothing, or links and ports that serve one at a time."""
     power_mw: Power = field(default=0, compare=False)
@@ -218,18 +229,20 @@ class Machine:
         """No message costs a PE more than this and its copy: ``limits`` counts on it."""
         of_levels = (level.send_startup_ps + level.receive_startup_ps for level in self.levels)
         startups_ps = max(self.send_startup_ps + self.receive_startup_ps, *of_levels, 0)
-        return startups_ps + self.probe_ps
+        one_sided_ps = self.handoff_ps + self.get_startup_ps + self.completion_ps
+        return startups_ps + self.probe_ps + one_sided_ps
+
+    @property
+    def uses(self) -> tuple[str, ...]:
+        """What its rows have columns of their own for."""
+        uses = {"threads": self.service == THREAD, "is uneven": self.is_uneven}
+        return tuple(use for use, it_does in uses.items() if it_does)
 
     @property
     def is_uneven(self) -> bool:
         """Does computing take anything else than the sum of what tests and rays cost?"""
         plain = self.compute_startup_ps == self.least_tests == 0 and not self.speed
         return not (plain and self.noise == "0" and self.straggler == NOBODY)
-
-    @property
-    def uses(self) -> tuple[str, ...]:
-        """As ``PolicyParameters.uses``."""
-        return ("is uneven",) if self.is_uneven else ()
 
     @property
     def processors(self) -> int:

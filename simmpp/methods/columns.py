@@ -16,9 +16,11 @@ NUMBERS = columns.COLUMNS
 BY_USE = {
     "packs": columns.PACKED_COLUMNS,
     "talks": columns.USER_COLUMNS,
+    "threads": columns.SERVICE_COLUMNS,
     "is uneven": columns.UNEVEN_COLUMNS,
 }
-"""Further ones, of sweeps in which a policy or a machine makes use of something: ``uses``."""
+"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
+``Machine.uses``)."""
 FURTHER = tuple(name for names in BY_USE.values() for name in names)
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from simmpp.machine.machine import TORUS, Machine
 from simmpp.methods.analytical import analytical, analytical_measured
 from simmpp.methods.case import Case
 from simmpp.methods.simulation import simulation
@@ -28,32 +27,20 @@ class Method:
     """It reads the placement, and so the seed may have a part in what it says."""
     uses_engine: bool = True
     """It runs an event loop."""
-    knows_torus_alone: bool = False
-    """It has no meaning for machines whose PEs are joined otherwise or compute unevenly, or where
-    they are islands."""
+    knows_papers_machine_alone: bool = False
+    """It has no meaning for machines whose PEs are joined, or requests served, otherwise, or which
+    compute unevenly, nor for islands."""
     most_seeds: int | None = 1
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
-
-    def lacks(self, machine: Machine, islands: int) -> str:
-        """What it has no notion of, as a sentence goes on; empty if there is nothing."""
-        lacking = {
-            f"the topology is {machine.topology}": machine.topology != TORUS,
-            "there are islands": islands > 1,
-            "a machine has compute_startup, least_tests, speed, noise or straggler": (
-                machine.is_uneven
-            ),
-        }
-        found = (text for text, is_so in lacking.items() if is_so and self.knows_torus_alone)
-        return next(found, "")
 
 
 METHODS: dict[str, Method] = {
     "simulate": Method(simulation, most_seeds=None),
     "analytical": Method(
-        analytical, DATAFLOWS, is_placed=False, uses_engine=False, knows_torus_alone=True
+        analytical, DATAFLOWS, is_placed=False, uses_engine=False, knows_papers_machine_alone=True
     ),
     "analytical-measured": Method(
-        analytical_measured, DATAFLOWS, uses_engine=False, knows_torus_alone=True
+        analytical_measured, DATAFLOWS, uses_engine=False, knows_papers_machine_alone=True
     ),
 }
 SIMULATE = "simulate"

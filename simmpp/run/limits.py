@@ -6,13 +6,13 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
   computes where speeds differ.
 - *launches*: startups of computing, and what lanes of an accelerator add that are left empty.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
-  unpacking included; between levels those of the outermost.
+  unpacking included; with a thread what the PEs pay.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
 - *latency*: nb x (makespan - busy time of the busiest PE), when even that one waits: for messages
-  on their way, and for those who answer. Of that, the part that flights are latency, with one hop;
-  flights between levels are those of the outermost.
+  on their way, and for those who answer. Of that, the part that flights are latency. Flights are
+  the mean of those between all pairs of PEs (``flights``): rows don't say who sent to whom.
 - *bandwidth*: the rest of that, the part that flights are bytes on a link.
 
 Busy is who computes or communicates. The last four are what PEs wait; where only sums over PEs are
@@ -33,8 +33,10 @@ from typing import Any
 
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
+from simmpp.machine.service import fixed_costs
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.methods.simulation import integers
+from simmpp.run.flights import mean_flight
 
 COMPUTE, LAUNCHES = "compute", "launches"
 STARTUPS, COPYING = "startups", "copying"
@@ -55,32 +57,21 @@ Numbers = Mapping[str, Any]
 class MessageCosts:
     """What limits need of a machine."""
 
-    startups_ps: int
-    """Of both PEs, for any message; of levels those of the outermost."""
+    startups_ps: tuple[int, ...]
+    """Of both PEs, for each kind of message; the mean of levels'."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
-    """Latency, and one hop; of levels that of the outermost."""
+    """Latency, with the hops between two PEs in the mean; of levels the mean."""
     bytes_per_s: int
     """0: unlimited."""
 
     @classmethod
     def of(cls, constants: Mapping[str, Any]) -> MessageCosts:
         """From a machine's fields, as ``run.json`` has them; KeyError where these were others."""
-        startups = ("send_startup_ps", "receive_startup_ps")
-        startups_ps = sum(constants[name] for name in startups)
-        rates = [constants["link_bytes_per_s"], constants["injection_bytes_per_s"]]
-        flight_ps = constants["latency_ps"] + constants["hop_latency_ps"]
-        if levels := constants.get("levels"):
-            rates, flight_ps = [levels[-1]["bytes_per_s"]], levels[-1]["latency_ps"]
-            startups_ps = sum(levels[-1].get(name, constants[name]) for name in startups)
-        copies = zip(constants["pack"], constants["unpack"], strict=True)
-        return cls(
-            startups_ps,
-            tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies),
-            flight_ps,
-            min(filter(None, rates), default=0),
-        )
+        flight = mean_flight(constants)
+        costs = fixed_costs(constants, flight.send_startup_ps, flight.receive_startup_ps)
+        return cls(*costs, flight.latency_ps, flight.bytes_per_s)
 
 
 @dataclass(frozen=True)
@@ -156,7 +147,9 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
         return {COMMUNICATION: total_ps}
     parts = [numbers.get(f"{kind}_parts") or numbers[f"{kind}_messages"] for kind in KINDS]
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
-    startups_ps = min(total_ps, numbers["messages"] * costs.startups_ps + fixed_ps)
+    counts = (numbers[f"{kind}_messages"] for kind in KINDS)
+    each_ps = sum(n * each for n, each in zip(counts, costs.startups_ps, strict=True))
+    startups_ps = min(total_ps, each_ps + fixed_ps)
     return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
 
 

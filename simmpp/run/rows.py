@@ -66,8 +66,9 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
-    uses = {use for run in runs for use in run.parameters.uses} | set(point.machine.uses)
-    write_csv(in_order(row(point, run) for run in runs), result_columns(uses=uses), path)
+    uses = {use for run in runs for use in run.parameters.uses} | {*point.machine.uses}
+    columns = result_columns(uses=uses)
+    write_csv(in_order(row(point, run) for run in runs), columns, path)
 
 
 def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from calls import begin_in, refused, simmpp
 
+from simmpp.commands.reading import print_readings_of_sweep
+from simmpp.config.config import load_config
 from simmpp.config.reading import load_reading, reading_names
 from simmpp.machine.presets import OVERRIDDEN
 
@@ -110,6 +112,17 @@ def test_run_says_that_costs_are_for_another_preset() -> None:
     other = simmpp("run", "c.yaml", "--set", "machine.preset=t3d").stdout
     assert "reading mixed has costs for t3e, none for t3d: not set" in other
     assert "machine.t3e" not in other
+
+
+def test_a_sweep_of_machines_says_whose_costs_the_reading_has(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    sweep = "sweep: {machine.preset: [gpu-node, t3e, t3d], processors: [2, 4]}\n"
+    Path("c.yaml").write_text(CONFIG + sweep)
+    print_readings_of_sweep(load_config(Path("c.yaml")))
+    told = capsys.readouterr().out
+    assert [line[0] for line in block(told, "mixed")] == lines_of("mixed")  # the T3E's as well
+    assert told.endswith("reading mixed has costs for t3e, none for gpu-node, t3d: not set\n")
 
 
 def test_a_sweep_of_readings_says_what_each_set() -> None:

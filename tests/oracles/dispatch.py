@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from oracles.state import PE, Part
+from oracles.state import PE, WHOSE_LOAD, Part
 from oracles.view import Views, numbers, random_draw
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.policy.policy import Hook
@@ -44,6 +44,12 @@ class Dispatch(Views):
     def packed(self, pe: PE, decided: list[tuple[int, Part]]) -> Iterator[Parcel]:
         """Messages of what has been decided, those that may share one together."""
         shared = {"requests": ((RAYS,), (REQUEST,)), "all": ((RAYS, REQUEST),)}
+        if self.machine.service == "nic":  # a get is a message of its own
+            for kind in (RAYS, REQUEST):
+                for other in self.others(pe):
+                    alone = [part for to, part in decided if to == other and part.kind == kind]
+                    yield from ((other, [part]) for part in alone)
+            return
         for kinds in shared[self.policy.packing]:
             for other in self.others(pe):
                 parts = [part for to, part in decided if to == other and part.kind in kinds]
@@ -141,6 +147,9 @@ class Dispatch(Views):
         if self.policy.refresh_ps is None or not knows_loads(self.rules):
             return
         for other in self.others(pe):
-            silence = pe.clock - pe.last_departure[other]
-            if other in pe.peers and silence >= self.policy.refresh_ps:
-                pe.clock = self.send(pe.clock, pe, other, [Part(LOAD, 0)])
+            last, load = pe.last_departure[other], Part(LOAD, 0)
+            if self.machine.service == "nic":
+                last = max(last, pe.heard[other])
+                load = Part(LOAD, self.machine.request_bytes, WHOSE_LOAD)
+            if other in pe.peers and pe.clock - last >= self.policy.refresh_ps:
+                pe.clock = self.send(pe.clock, pe, other, [load])

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from oracles.costs import copy_ps, intersection_ps
-from oracles.network import distance, network_ps, startups_ps
+from oracles.costs import intersection_ps, packing, unpacking
+from oracles.network import distance, network_ps, receiving, sending
 from oracles.pace import rounded, speed_of
 from oracles.state import PE
 from oracles.world import World
@@ -61,7 +61,7 @@ class Views(World):
             memory=pe.memory,
             random=random_draw(self.seed, pe) if draws else None,
             finished=pe.finished,
-            busy_ps=sum(pe.worked.values()),
+            busy_ps=pe.worked["compute"] + pe.worked["communication"],
             compute_ps=pe.worked["compute"],
             fetched=pe.fetched,
             released=pe.released,
@@ -79,10 +79,10 @@ class Views(World):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
-        sending, receipt = startups_ps(machine, pe.number, other)
-        view.send_ps = sending + copy_ps(machine.pack[RAYS], n_bytes)
-        view.receive_ps = receipt + copy_ps(machine.unpack[RAYS], n_bytes)
-        view.flight_ps = network_ps(machine, pe.number, other, n_bytes)
+        here = pe.number
+        view.send_ps = sending(machine, here, other, RAYS) + packing(machine, RAYS, n_bytes)
+        view.receive_ps, by_thread_ps = self.taken_in(other, here, RAYS, n_bytes)
+        view.flight_ps = network_ps(machine, here, other, n_bytes) + by_thread_ps
         return view  # type: ignore[return-value]
 
     def view_of_object(
@@ -110,20 +110,24 @@ class Views(World):
 
     def fetch_ps(self, pe: PE, obj: int) -> tuple[int, int, int]:
         """Of a request, of the object, and of all that is in between."""
-        owner, machine = self.owner_of(pe.number, obj), self.machine
+        here, owner, machine = pe.number, self.owner_of(pe.number, obj), self.machine
         asked, fetched = machine.request_bytes, self.object_bytes[obj]
-        sending, receipt = startups_ps(machine, pe.number, owner)
-        ask_ps = sending + copy_ps(machine.pack[REQUEST], asked)
-        receive_ps = receipt + copy_ps(machine.unpack[OBJECT], fetched)
-        between_ps = (
-            network_ps(machine, pe.number, owner, asked)
-            + receipt
-            + copy_ps(machine.unpack[REQUEST], asked)
-            + sending
-            + copy_ps(machine.pack[OBJECT], fetched)
-            + network_ps(machine, owner, pe.number, fetched)
-        )
-        return ask_ps, receive_ps, between_ps
+        ask_ps = sending(machine, here, owner, REQUEST) + packing(machine, REQUEST, asked)
+        between_ps = network_ps(machine, here, owner, asked)
+        between_ps += network_ps(machine, owner, here, fetched)
+        if machine.service != "nic":
+            between_ps += receiving(machine, owner, here)
+            between_ps += unpacking(machine, REQUEST, asked)
+            between_ps += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
+        receive_ps, by_thread_ps = self.taken_in(here, owner, OBJECT, fetched)
+        return ask_ps, receive_ps, between_ps + by_thread_ps
+
+    def taken_in(self, pe: int, other: int, kind: int, n_bytes: int) -> tuple[int, int]:
+        """What receipt costs a PE, and what its thread does for it before."""
+        receipt = receiving(self.machine, pe, other) + unpacking(self.machine, kind, n_bytes)
+        if self.machine.service == "thread":
+            return self.machine.handoff_ps, receipt
+        return receipt, 0
 
     def known_load(self, clock: int, pe: PE, other: int) -> tuple[int, int]:
         """What a PE knows of another's load, and for how long it has."""

@@ -7,8 +7,12 @@ algorithm nor its protocols.
 
 from __future__ import annotations
 
+import csv
+import sys
 from dataclasses import replace
+from importlib import import_module
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +22,8 @@ from traffic import arrivals_of_bytes
 
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import machine
+
+EXPERIMENT = Path(__file__).parents[2] / "experiments" / "machines"
 
 
 def one_way_us(made: Machine, other: int, n_bytes: int) -> float:
@@ -65,6 +71,21 @@ def test_messages_follow_each_other_at_the_measured_rate() -> None:
     found = arrivals_of_bytes(made, [Sent(0, 0, n, 4, 256) for n in range(100)])
     rate_mb_per_s = 256 / (np.diff(found).mean() / 1e6)
     assert rate_mb_per_s == pytest.approx(200, rel=1e-3)  # cscs-reframe-tests, osu_run.py
+
+
+def test_the_table_of_published_measurements_is_what_the_networks_make() -> None:
+    """All but what many PEs do together; what a constant was taken from has a factor of 1."""
+    sys.path.append(str(EXPERIMENT))
+    published = import_module("published")
+    with open(EXPERIMENT / "published.csv", newline="") as file:
+        lines = {line["what"]: line for line in csv.DictReader(file)}
+    for row in (*published.single_messages(), *published.rates()):
+        line = lines[row.what]
+        assert line["preset"] == row.preset and float(line["measured"]) == row.measured
+        assert float(line["simulated"]) == pytest.approx(row.simulated, rel=1e-3)
+        if row.kind == published.TAKEN:
+            closely = 0.06 if row.preset == "t3e-shmem" else 2e-3  # that is "about 1 us"
+            assert row.simulated / row.measured == pytest.approx(1, rel=closely), row.what
 
 
 MEASURED_US = {8: 148.55, 65536: 395.63, 1 << 20: 6751.7}

@@ -146,8 +146,8 @@ ARRAYS = {
     # First parts, plus 1, of the messages that a dispatch is making up: of rays and what goes with
     # them by distance in the ring, of requests alone nb further on.
     "made_up": Array(I4, lambda n: 2 * n.nb),
-    "sort_keys": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
-    "sort_items": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
+    "sort_keys": Array(I8, lambda n: max(n.objects, n.sent)),
+    "sort_items": Array(I8, lambda n: max(n.objects, n.sent)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
@@ -161,7 +161,7 @@ ARRAYS = {
     "slices": Array(SLICE, lambda n: n.counted),
     # of the compiled event loop
     "heap": Array(EVENT_KEY, lambda n: 0),  # grows
-    "processes": Array(PROCESS, lambda n: n.nb),
+    "processes": Array(PROCESS, lambda n: 2 * n.nb),  # PEs, then their threads
 }
 """Every array of a run, declared nowhere else."""
 
@@ -185,6 +185,7 @@ PARAMETERS = (
     "n_objects",
     *PACE,
     "contends",  # links and ports serve one message at a time
+    "service",  # who answers requests: BY_PE, BY_THREAD or BY_NIC
     "depth_first",
     "keeps",  # fetched objects, in transient memory
     "transient",  # objects that it holds, 0: as many as fit
@@ -243,6 +244,7 @@ REPORT = (
     "phase",  # of the PE's next instant
     "consumed",  # 1: the message of the inbox was received
     "n_sent",  # messages in the outbox
+    "handed",  # the message that a thread has handed over to its PE; NONE: none
 )
 """What the last step of a PE wants its engine to know."""
 

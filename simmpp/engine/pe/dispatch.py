@@ -40,7 +40,7 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.candidates import withdraw
 from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import drop_if_idle, is_holder, set_unasked
-from simmpp.engine.pe.peers import known_load
+from simmpp.engine.pe.peers import known_load, silence_ps
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.record.counters import note_work
@@ -219,11 +219,14 @@ def _collect_misses(s: Run, me: int, nothing_else: int) -> int:
 def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
     """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
 
+    With nic: get the load of those of which nothing was heard for long.
+
     Not after the receipt of such a message, or loads would answer loads for ever.
     """
     clock_ps = now_ps
     for i in range(_collect_peers(s, me, exchanged(s), me, 0)):
-        peer = peer_rows(s)[sort_items(s)[i]]
-        if clock_ps - peer.sent_ps >= s.refresh_ps:
-            clock_ps = send_load(s, me, peer.key % s.processors, clock_ps)
+        peer_row = sort_items(s)[i]
+        if silence_ps(s, peer_row, clock_ps) >= s.refresh_ps:
+            other = peer_rows(s)[peer_row].key % s.processors
+            clock_ps = send_load(s, me, other, clock_ps)
     return clock_ps

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.records import NONE, PACK, UNPACK, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
-    copy_costs,
     miss_rows,
     object_bytes,
     peer_rows,
@@ -15,7 +14,7 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.costs import sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.islands import holders_of, owner_of
 from simmpp.engine.pe.pace import test_here_ps
 from simmpp.engine.pe.peers import age_ps, known_load
@@ -47,11 +46,9 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        pack_ps = copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
-        unpack_ps = copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
-        view.send_ps = sending_ps(s, me, other, RAYS) + pack_ps
-        view.receive_ps = receiving_ps(s, other, me, RAYS) + unpack_ps
-        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+        view.send_ps = sent_alone_ps(s, me, other, RAYS, n_bytes)
+        view.receive_ps, by_thread_ps = taken_in_ps(s, other, me, RAYS, n_bytes)
+        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes) + by_thread_ps
     if s.send_reads & WANTED:
         show_wanted(s, view, me, peer_row)
     show_self(s, view, me, now_ps, s.send_reads)

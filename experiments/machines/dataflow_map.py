@@ -1,0 +1,162 @@
+"""Which dataflow is fastest, over the bytes of an object and how often a PE uses one it fetched?
+
+    python experiments/machines/dataflow_map.py
+
+Rays of ``rays.py``: 4,096 start on each PE and each meets 4 different objects, drawn at random, so
+with N objects a PE uses each 16,384 / N times. PEs own their share, have nothing else at first and
+keep what they fetch. Each machine is a panel. Writes dataflow_map.csv (the time of each dataflow at
+each point), unless it is there, and the figure.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
+from simmpp.common.files import write_csv
+from simmpp.engine.simulate import simulate
+from simmpp.machine.machine import Machine
+from simmpp.machine.presets import machine
+from simmpp.placement.place import place
+from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.plot.matplotlib_panels import SETTINGS, save
+from simmpp.policy.parameters import PolicyParameters
+from simmpp.workload.workload import Workload
+
+sys.path.append(str(Path(__file__).parent))
+
+from rays import random_rays
+
+HERE = Path(__file__).parent
+MACHINES = {"t3e": 32, "cpu-cluster": 32, "gpu-cluster": 32, "gpu-node": 8}
+"""PEs of each."""
+RAYS, EACH = 4096, 4
+USES = (1, 4, 16, 64, 256, 512)
+"""Of an object by a PE: rays per fetch."""
+SIZES = (100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
+"""Bytes of an object."""
+POLICIES = {
+    "object": ("object dataflow", "o", "#d55e00"),
+    "ray": ("ray dataflow", "s", "#0072b2"),
+    "concurrent": ("concurrent dataflow", "^", "#009e73"),
+}
+"""How each is called and drawn: colours of Okabe and Ito, and a marker."""
+MARGINS = {1.05: 18, 1.5: 40, np.inf: 75}
+"""Area of a marker up to each T(second) / T(best)."""
+SEED = 0
+
+Row = dict[str, Any]
+
+
+def machines() -> dict[str, Machine]:
+    """By name."""
+    return {name: machine(name, {}, nb) for name, nb in MACHINES.items()}
+
+
+def times_ps(made: Machine, workload: Workload) -> dict[str, int]:
+    """Makespan of each dataflow; PEs keep whatever they fetch."""
+    memory = Memory(Fraction(0), transient=workload.n_objects)
+    placement = place(workload, made.processors, memory, PlacementRules(), SEED)
+    return {
+        f"{name}_ps": simulate(workload, made, placement, PolicyParameters(name)).makespan_ps
+        for name in POLICIES
+    }
+
+
+def simulated() -> list[Row]:
+    """The three dataflows at every point of the map."""
+    rows: list[Row] = []
+    for name, made in machines().items():
+        for uses in USES:
+            for size in SIZES:
+                n_objects = RAYS * EACH // uses
+                workload = random_rays(RAYS * made.processors, n_objects, EACH, size)
+                at = {"machine": name, "bytes": size, "rays_per_fetch": uses}
+                rows.append(at | times_ps(made, workload))
+        print(f"{name}: done", flush=True)
+    return rows
+
+
+def draw(rows: list[Row]) -> None:
+    """A panel per machine; the marker is the winner, its size by how much."""
+    names = list(dict.fromkeys(row["machine"] for row in rows))
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=(13, 7), layout="constrained")
+        grid = figure.subplots(2, 4, sharex=True, sharey=True)
+        for axes, name in zip(grid.flat, names, strict=False):
+            draw_panel(axes, [row for row in rows if row["machine"] == name], name)
+        for axes in [*grid.flat][len(names) :]:
+            axes.remove()
+        figure.supxlabel("bytes of an object", fontsize=9)
+        figure.supylabel("rays per fetch", fontsize=9)
+        legend(figure)
+        save(figure, HERE / "dataflow_map")
+
+
+def draw_panel(axes: Axes, rows: list[Row], title: str) -> None:
+    """One map."""
+    for name, (_, marker, colour) in POLICIES.items():
+        won = [row for row in rows if order(row)[0] == name]
+        areas = [area(row) for row in won]
+        across, up = ([float(row[key]) for row in won] for key in ("bytes", "rays_per_fetch"))
+        axes.scatter(across, up, areas, marker=marker, color=colour, linewidth=0)
+    classical = [int(row["ray_ps"]) / int(row["object_ps"]) for row in rows]
+    level = np.log(classical).reshape(len(USES), len(SIZES))
+    axes.contour(SIZES, USES, level, [0.0], colors="black", linewidths=1.2)
+    axes.set(xscale="log", yscale="log", xlim=(50, 2e7), ylim=(0.6, 900))
+    axes.set_yticks(USES, map(str, USES))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_minor_locator(NullLocator())
+    axes.set_title(title, fontsize=9)
+
+
+def order(row: Row) -> list[str]:
+    """Policies from the fastest to the slowest; the first of equal ones counts as the faster."""
+    return sorted(POLICIES, key=lambda name: int(row[f"{name}_ps"]))
+
+
+def area(row: Row) -> int:
+    """The marker's, by T(second) / T(best)."""
+    best, second, _ = order(row)
+    margin = int(row[f"{second}_ps"]) / int(row[f"{best}_ps"])
+    return next(area for bound, area in MARGINS.items() if margin <= bound)
+
+
+def legend(figure: Figure) -> None:
+    """Markers of policies and of margins."""
+    axes = figure.axes[0]
+    entries: list[Artist] = [
+        axes.scatter([], [], 75, marker=marker, color=colour, label=f"{label} is fastest")
+        for label, marker, colour in POLICIES.values()
+    ]
+    words = ("up to 5 %", "up to 50 %", "more")
+    entries += [
+        axes.scatter([], [], area, marker="o", color="0.6", label=f"by {word}")
+        for word, area in zip(words, MARGINS.values(), strict=True)
+    ]
+    entries += axes.plot([], [], color="black", linewidth=1.2, label="T(ray) = T(object)")
+    figure.legend(handles=entries, loc="outside lower center", ncols=4, fontsize=8)
+
+
+def main() -> None:
+    """Simulate, write rows, draw."""
+    path = HERE / "dataflow_map.csv"
+    if not path.exists():
+        rows = simulated()
+        write_csv(rows, list(rows[0]), path)
+    with open(path, encoding="utf-8", newline="") as file:
+        draw(list(csv.DictReader(file)))
+
+
+if __name__ == "__main__":
+    main()
