@@ -191,8 +191,8 @@ class Machine:
     """Tests and rays take what they cost / speed; that of others is 1. By PEs, or by shares of them
     in turn: {25%: 2} is the first quarter."""
     noise: Noise = "0"
-    """A go at computing takes a factor near 1 as long, drawn with the seed: lognormal, with a mean of
-    1; the noise is the deviation of its logarithm."""
+    """A go at computing takes a factor as long that is drawn with the seed: lognormal, with a mean
+    of 1; the noise is the deviation of its logarithm."""
     straggler: Straggler = NOBODY
     """A PE that is late for a while."""
     topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
