@@ -65,6 +65,8 @@ class Views(World):
             compute_ps=pe.worked["compute"],
             fetched=pe.fetched,
             released=pe.released,
+            speed=rounded(1000 * speed_of(self.machine, pe.number)),
+            other_speed=rounded(1000 * speed_of(self.machine, other)),
             **numbers(self.policy, self.workload.n_primaries, self.nb),
             **own,
         )

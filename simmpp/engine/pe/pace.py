@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
 from simmpp.common.randomness import key
-from simmpp.engine.arrays.records import NONE, Run
+from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import noise_factors, pes, test_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.noise import ONE, factors
@@ -92,6 +92,12 @@ def test_here_ps(s: Run, me: int, obj: int) -> int:
     """What one test against an object takes a PE, by its speed."""
     pe = pes(s)[me]
     return scaled(test_ps(s)[obj], pe.pace_times, pe.pace_per)
+
+
+@kernel
+def speed_of(pe: Row) -> int:
+    """Tests of a PE in the time of 1000 on one of speed 1."""
+    return scaled(1000, pe.pace_per, pe.pace_times)
 
 
 # --- at the start of a run ---

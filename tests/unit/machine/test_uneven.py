@@ -10,12 +10,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import simmpp
 from simmpp.common.errors import ConfigError
+from simmpp.config.config import config_from_mapping
 from simmpp.engine.pe.pace import scaled
 from simmpp.machine.machine import Machine
 from simmpp.machine.noise import _QUANTILES, DRAWS, ONE, factors
 from simmpp.machine.presets import OVERRIDDEN, machine
 from simmpp.machine.uneven import Straggler, bound_of, factor, speeds_of, total_speed
+from simmpp.model.known import require_known
 
 
 @pytest.mark.parametrize("noise", ["1/100", "1/20", "1/3", "1"])
@@ -94,6 +97,30 @@ def test_a_machine_with_all_of_it() -> None:
     assert found.is_uneven and not made().is_uneven
     assert found.sources["speed"] == found.sources["noise"] == OVERRIDDEN
     assert made(compute_startup="1 us").is_uneven and made(least_tests=9).is_uneven
+
+
+def config(machine: dict[str, object], **keys: object) -> dict[str, object]:
+    here = {"scene": "tetra:2", "picture": {"resolution": 8}, "processors": 4, "policy": "object"}
+    return {**here, "machine": machine, **keys}
+
+
+def test_rows_tell_the_bound_and_seeds_draw_noise() -> None:
+    keys = {"reading": "plain", "seeds": [0, 1], "memory": {"fraction": 1}}
+    noisy = simmpp.sweep(config({"noise": "20%", "speed": {"50%": 2}}, **keys)).rows
+    assert (noisy.bound_ps * 6 - noisy.work_ps).between(0, 5).all() and noisy.work_ps.nunique() == 1
+    assert noisy.makespan_ps.nunique() == 2 and (noisy.launch_ps == 0).all()
+    plain = simmpp.sweep(config({}, **keys)).rows
+    assert plain.makespan_ps.nunique() == 1 and "work_ps" not in plain
+
+
+@pytest.mark.parametrize("key", ["compute_startup", "least_tests", "speed", "noise", "straggler"])
+def test_the_papers_model_knows_none_of_it(key: str) -> None:
+    values = {"compute_startup": "1 us", "least_tests": 2, "speed": {0: 2}, "noise": "5%"}
+    machine = {key: values.get(key, {"factor": 2})}
+    with pytest.raises(ConfigError, match=r"expected simulate where a machine has compute_startup"):
+        config_from_mapping(config(machine, method="analytical"))
+    with pytest.raises(ConfigError, match=r"^machine: the paper's analytical model knows tests"):
+        require_known(made(**machine))
 
 
 @pytest.mark.parametrize(
