@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from simmpp.policy import Policy, View, hook
+from simmpp.policy import Policy, hook
+from simmpp.policy.view import View
 
 
 @hook
