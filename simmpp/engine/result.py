@@ -21,6 +21,7 @@ from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.uneven import bound_of
 
 if TYPE_CHECKING:  # who only reads results needs no numba
+    from simmpp.engine.memory_use import MemoryUse
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
     from simmpp.machine.machine import Machine
@@ -79,6 +80,8 @@ class Result(Displayed):
     """That over the sum of all PEs' speeds (nb where all have 1), rounded up."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
+    memory: MemoryUse | None = None
+    """What became of the memory of PEs, where it has a capacity."""
     log: NDArray[np.void] | None = None
     """Event log, if asked for (see ``engine.log``)."""
     counters: Counters | None = None
@@ -86,6 +89,8 @@ class Result(Displayed):
     ray_hops: NDArray[np.int32] | None = None
     """(n,) int32, with ``Recording.hops``: links crossed for each ray, by itself in a message or by
     the requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
+    ray_ends_ps: NDArray[np.int64] | None = None
+    """(n,) int64, with ``Recording.ends``: when each ray was finished."""
     tested_rays: NDArray[np.int32] | None = None
     """(tests,) int32, with ``Recording.tests``: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None
@@ -163,14 +168,18 @@ def concluded(
     policy: str,
     engine: str,
     log: NDArray[np.void] | None,
+    use: MemoryUse | None,
     machine: Machine,
     work_ps: int | None = None,
 ) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing.
 
+    A run that could not be brought to its end has no makespan: the time is that of its last event.
     Without ``work_ps``, that of a machine that is not uneven, PEs have computed nothing else.
     """
     makespan_ps = state["last_ray_ps"]
+    if state.infeasible:
+        makespan_ps = max(makespan_ps, int(state.pes["busy_until_ps"].max()))
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
     communication_ps = state.pes["communication_ps"] - overrun_ps
     late_ps = np.maximum(state.pes["served_until_ps"] - makespan_ps, 0)
@@ -207,9 +216,11 @@ def concluded(
         work_ps=work_ps,
         bound_ps=bound_of(work_ps, machine.speed, machine.processors),
         rules_never_fired=_never_fired(state, parts_by_kind),
+        memory=use,
         log=log,
         counters=state.counters() if state["record_counters"] else None,
         ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
+        ray_ends_ps=state.arrays["ends_ps"] if state["record_ends"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from simmpp.engine import columns
+from simmpp.engine import columns, memory_use
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
@@ -13,11 +13,14 @@ METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = columns.COLUMNS
 """Integers of a run; empty where the method does not know."""
+BOUNDED = "bounded"
+"""The memory of PEs has a capacity."""
 BY_USE = {
     "packs": columns.PACKED_COLUMNS,
     "talks": columns.USER_COLUMNS,
     "threads": columns.SERVICE_COLUMNS,
     "is uneven": columns.UNEVEN_COLUMNS,
+    BOUNDED: memory_use.COLUMNS,
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""

@@ -74,7 +74,7 @@ def scaled(number: int, times: int, per: int) -> int:
 
 
 @kernel
-def end_of_go(s: Run, me: int, cost_ps: int, tests: int, done: int, pace: Pace) -> int:
+def took(s: Run, me: int, cost_ps: int, tests: int, done: int, pace: Pace) -> int:
     """How long a go at computing has taken, with its startup, if it made some tests and finished
     ``done`` rays that cost so much."""
     took_ps = paced_ps(cost_ps, pace)
