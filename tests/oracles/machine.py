@@ -165,6 +165,8 @@ class Simulation(Serving):
         clock = self.pay("compute", pe, clock, pe.go.end - clock)
         if pe.go.leaves_lanes_empty:
             self.ledger.finished_ps[done_before:] = [clock] * done
+            for ray in pe.go.finished:
+                self.ledger.ray_ends[ray] = clock
         tests = self.machine.quantum - tests_left
         self.ledger.did(pe, time, "compute", clock, None, tests=tests, rays=done)
         return clock
@@ -203,6 +205,7 @@ class Simulation(Serving):
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.ledger.finished_ps.append(clock)
         self.ledger.ray_ends[ray] = clock
+        pe.go.finished.append(ray)
         self.get_on(pe)
         self.rays_left -= 1
         self.alive += len(self.children[ray]) - 1

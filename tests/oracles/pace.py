@@ -58,6 +58,8 @@ class Go:
     tests_ps: list[int] = field(default_factory=list)
     """What they cost."""
     rays_ps: int = 0
+    finished: list[int] = field(default_factory=list)
+    """Rays."""
 
     @classmethod
     def begun(cls, machine: Machine, speed: Fraction, begin: int) -> Go:

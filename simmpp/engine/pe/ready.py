@@ -78,7 +78,7 @@ def pop_ready(s: Run, me: int) -> None:
 
 
 @kernel
-def finish_ray(s: Run, me: int, ray: int) -> None:
+def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     """A ray has made its last test and is shaded: its children become ready here."""
     pe = pes(s)[me]
     child, end = child_offsets(s)[ray], child_offsets(s)[ray + 1]
@@ -99,3 +99,11 @@ def finish_ray(s: Run, me: int, ray: int) -> None:
         rooms(s)[me].reserved -= 1  # else its children have its room
     elif s.measures and not s.bounded:
         note_memory(s, me)
+
+
+@kernel
+def end_together(s: Run, ray: int, now_ps: int) -> None:
+    """Linked rays are finished now, with lanes that were left empty, and not one by one."""
+    while ray != NONE:
+        ends_ps(s)[ray] = now_ps
+        ray = rays(s)[ray].next
