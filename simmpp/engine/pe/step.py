@@ -164,7 +164,7 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
     if done > 0:
         # Whatever followed the last of these rays was for others, which are finished later.
         s.last_ray_ps = max(s.last_ray_ps, end_ps)
-        if s.record_ends and tests < s.least_tests:
+        if s.record_ends and 0 < tests < s.least_tests:
             end_together(s, last, end_ps)
     if tests > 0 or done > 0:
         s.progress_at = s.activities
