@@ -19,6 +19,7 @@ from simmpp.machine.machine import SERVICES, TOPOLOGY_NAMES
 from simmpp.policy import Policy, hook
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import POLICIES, PolicyParameters
+from simmpp.policy.plain import uncompiled
 from simmpp.policy.reads import groups_read, names_in, reads
 from simmpp.policy.record import VIEW
 from simmpp.policy.view import GROUPS, LOADS, NUMBERS, OBJECT, RANDOM, SELF, WAY, View
@@ -133,6 +134,7 @@ def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
     assert names_in(calls_another) >= {"known_load", "hops"}
     assert compiled(calls_another, known_load=3, hops=4) == 7
     assert groups_read(calls_another) == LOADS | WAY
+    assert uncompiled(calls_another)(cast(View, SimpleNamespace(known_load=3, hops=4))) == 7
     assert groups_read(in_a_lambda) == RANDOM
     assert groups_read(None) == groups_read(POLICIES["ray"].send) == 0
     assert groups_read(lambda v: v.object + v.now_ps) == OBJECT | SELF
