@@ -30,6 +30,7 @@ from simmpp.common.strict import (
 )
 from simmpp.common.units import shown
 from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
+from simmpp.policy.mistakes import unknown_like
 from simmpp.policy.policy import Packing, Policy
 from simmpp.policy.table import CEILING as CEILING
 from simmpp.policy.table import CLASSICAL as CLASSICAL
@@ -152,6 +153,8 @@ class PolicyParameters:
             if name in POLICIES:
                 raise mistake(f"its policy is called {name!r}: expected no name of the package's")
             raise mistake(f"its policy is called {name!r}: expected no other name beside it")
+        if file is not None and (problem := unknown_like(_policy(file))):
+            raise mistake(problem)
         if file is not None and "packing" in others.data:
             _refuse_packing(others.data["packing"], _policy(file))
         return file
