@@ -8,13 +8,12 @@ takes it over as it would receive it (``step.receive``).
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, Run
+from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, UNPACK, Run
 from simmpp.engine.arrays.views import messages, pes
+from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.peers import hear_load
-from simmpp.engine.pe.sending import answer_to, forget, pack
-from simmpp.engine.pe.step import unpacking_ps
-from simmpp.engine.record.counters import count_message
-from simmpp.engine.record.log import note_answer, note_serve
+from simmpp.engine.pe.sending import answer, forget, parts_ps
+from simmpp.engine.record.log import note_serve
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST
 
@@ -48,7 +47,8 @@ def serve(s: Run, me: int, message: int, now_ps: int) -> int:
 @kernel
 def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack a message; returns the end of that."""
-    end_ps = now_ps + unpacking_ps(s, me, message)
+    m = messages(s)[message]
+    end_ps = now_ps + receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
     pes(s)[me].in_hand = message
     s.consumed = 1
     s.activities += 1
@@ -62,16 +62,9 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
 def _finish(s: Run, me: int, message: int, now_ps: int) -> int:
     """A message is unpacked: hear the load, answer, hand over; returns the end of that."""
     m = messages(s)[message]
-    hear_load(s, me, m, now_ps)
-    end_ps = now_ps
-    answer = answer_to(s, message)
-    if answer != NONE:
-        messages(s)[answer].load = pes(s)[me].settled_load  # its PE may be in an activity
-        end_ps = pack(s, me, answer, now_ps)
-        if s.logs:
-            note_answer(s, answer, now_ps)
-        if s.record_counters:
-            count_message(s, messages(s)[answer], 1)
+    if s.listens:
+        hear_load(s, me, m, now_ps)
+    end_ps = answer(s, me, message, now_ps, True)
     if m.kind == REQUEST:
         forget(s, message)
     else:

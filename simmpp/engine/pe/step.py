@@ -46,7 +46,7 @@ from simmpp.engine.pe.talking import get_on, hear, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute, note_receive
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER
 from simmpp.machine.topology import hops
 
 
@@ -116,9 +116,10 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     if s.service == BY_THREAD:
         clock_ps = now_ps + s.handoff_ps
     else:
-        clock_ps = now_ps + unpacking_ps(s, me, message)
+        clock_ps = now_ps + receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
         # Heard before an answer is packed, and whatever the message is.
-        hear_load(s, me, m, clock_ps)
+        if s.listens:
+            hear_load(s, me, m, clock_ps)
         s.received += 1
     pe.received_load = 1 if m.kind == LOAD else 0
     links = hops(topology(s), m.source, me) if s.record_hops else 0
@@ -132,8 +133,8 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         note_load(s, me, clock_ps)
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
-    if s.service == BY_PE:
-        clock_ps = answer(s, me, message, clock_ps)
+    if s.service == BY_PE and (m.kind == REQUEST or m.part != NONE):
+        clock_ps = answer(s, me, message, clock_ps, False)
     if m.kind == USER:
         clock_ps = hear(s, me, message, clock_ps)
     elif m.kind == OBJECT or m.kind == RAYS:
@@ -143,13 +144,6 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     pe.communication_ps += clock_ps - now_ps
     forget(s, message)
     return clock_ps
-
-
-@kernel
-def unpacking_ps(s: Run, me: int, message: int) -> int:
-    """What a message costs its receiver."""
-    m = messages(s)[message]
-    return receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
 
 
 @kernel
