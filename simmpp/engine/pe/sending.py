@@ -14,6 +14,7 @@ from simmpp.engine.arrays.records import (
     BY_NIC,
     ITS_LOAD,
     NONE,
+    ORDINARY,
     PACK,
     REQUESTS_TOGETHER,
     SINGLY,
@@ -21,7 +22,6 @@ from simmpp.engine.arrays.records import (
     Run,
 )
 from simmpp.engine.arrays.views import (
-    copy_costs,
     made_up,
     message_marks,
     messages,
@@ -35,40 +35,30 @@ from simmpp.engine.arrays.views import (
     user_words,
 )
 from simmpp.engine.network import depart
-from simmpp.engine.pe.costs import copy_ps, sending_ps
+from simmpp.engine.pe.bounds.credits import take_owed
+from simmpp.engine.pe.costs import parts_ps, sending_ps
 from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import count_message, note_departure
-from simmpp.engine.record.log import note_answer, note_send
+from simmpp.engine.record.log import note_answer
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
 from simmpp.policy.view import View
 
 
 @kernel
-def parts_ps(s: Run, message: int, which: int) -> int:
-    """Packing (``which`` is PACK) or unpacking (UNPACK) of all parts of a message."""
-    m = messages(s)[message]
-    cost_ps = copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    while m.part != NONE:
-        m = messages(s)[m.part]
-        cost_ps += copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    return cost_ps
-
-
-@kernel
 def send_request(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
     """Ask a PE that has an object for it."""
-    row = _new_part(s, REQUEST, other, s.request_bytes)
+    row = new_part(s, REQUEST, other, s.request_bytes)
     messages(s)[row].obj = obj
-    return _post(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
 def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
-    row = _new_part(s, RAYS, other, n * s.ray_bytes)
+    row = new_part(s, RAYS, other, n * s.ray_bytes)
     m = messages(s)[row]
     m.first, m.last, m.n = first, last, n
-    return _post(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
@@ -77,19 +67,19 @@ def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
 
     With nic get the other's load.
     """
-    row = _new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
+    row = new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
     if s.service == BY_NIC:
         messages(s)[row].obj = ITS_LOAD
-    return _send(s, me, row, now_ps, False)
+    return send(s, me, row, now_ps, False)
 
 
 @kernel
 def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
     """Send a message of the policy's own: the words that it has left in its view."""
-    row = _new_part(s, USER, other, USER_WORDS * WORD_BYTES)
+    row = new_part(s, USER, other, USER_WORDS * WORD_BYTES)
     for i in range(USER_WORDS):
         user_words(s)[USER_WORDS * row + i] = view.words[i]
-    return _send(s, me, row, now_ps, False)
+    return send(s, me, row, now_ps, False)
 
 
 @kernel
@@ -99,14 +89,14 @@ def answer(s: Run, me: int, message: int, now_ps: int, by_thread: bool) -> int:
     while part != NONE:
         m = messages(s)[part]
         if m.kind == REQUEST:
-            row = _new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
-            messages(s)[row].obj = m.obj
+            row = new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
+            messages(s)[row].obj, messages(s)[row].purpose = m.obj, m.purpose
             if answering == NONE:
                 answering = row
             else:
                 _append(s, answering, row)
         part = m.part
-    return _send(s, me, answering, now_ps, by_thread) if answering != NONE else now_ps
+    return send(s, me, answering, now_ps, by_thread) if answering != NONE else now_ps
 
 
 @kernel
@@ -122,13 +112,14 @@ def forget(s: Run, message: int) -> None:
 
 
 @kernel
-def _new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+def new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
     """A message of one part, which may become a part of another one."""
     row = take(messages(s), message_marks(s))
     m = messages(s)[row]
     m.kind, m.destination = kind, destination
     m.payload_bytes = m.part_bytes = payload_bytes
     m.obj, m.n = NONE, 0
+    m.credit, m.purpose = 0, ORDINARY
     m.part, m.last_part = NONE, row
     m.depart_ps = NONE  # a later part never departs by itself
     return row
@@ -144,10 +135,10 @@ def _append(s: Run, message: int, part: int) -> None:
 
 
 @kernel
-def _post(s: Run, me: int, row: int, now_ps: int) -> int:
+def post(s: Run, me: int, row: int, now_ps: int) -> int:
     """Send what a dispatch has decided on, or put it to what else goes to that PE."""
     if s.packing == SINGLY:
-        return _send(s, me, row, now_ps, False)
+        return send(s, me, row, now_ps, False)
     m = messages(s)[row]
     place = _place(s, me, m)
     if _is_get(s, m):
@@ -189,12 +180,12 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
     s.n_sent = 0
     clock_ps = now_ps
     for i in range(n):
-        clock_ps = _send(s, me, sort_items(s)[i], clock_ps, False)
+        clock_ps = send(s, me, sort_items(s)[i], clock_ps, False)
     return clock_ps
 
 
 @kernel
-def _send(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> int:
+def send(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> int:
     """Pack a message and let it depart; a thread does not know the load within an activity."""
     pe, m = pes(s)[me], messages(s)[row]
     m.source, m.load, m.number = me, pe.settled_load if by_thread else pe.load, pe.messages_sent
@@ -203,6 +194,8 @@ def _send(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> int:
     pe.messages_sent += 1
     sent_by_kind(s)[m.kind] += 1
     s.bytes_sent += m.payload_bytes + s.header_bytes
+    if s.bounded:
+        m.credit = take_owed(s, me, m.destination)
     if s.packing != SINGLY:
         _count_parts(s, row)
     if s.refresh_ps != NONE:
@@ -219,7 +212,7 @@ def _note(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> None:
     if s.logs and by_thread:
         note_answer(s, row, now_ps)
     elif s.logs:
-        note_send(s, me, row, now_ps)
+        notesend(s, me, row, now_ps)
     if s.record_counters and by_thread:
         count_message(s, messages(s)[row], 1)
     elif s.record_counters:

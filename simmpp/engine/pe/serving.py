@@ -2,17 +2,17 @@
 
 It alternates between two instants, which fall together where it sent no answer: one message has
 been unpacked, and it begins with the next. What is not only requests it hands over to its PE, which
-takes it over as it would receive it (``step.receive``).
+takes it over as it would receive it (``receiving.receive``).
 """
 
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, UNPACK, Run
+from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, Run
 from simmpp.engine.arrays.views import messages, pes
-from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.peers import hear_load
-from simmpp.engine.pe.sending import answer, forget, parts_ps
+from simmpp.engine.pe.receiving import unpacking_ps
+from simmpp.engine.pe.sending import answer, forget
 from simmpp.engine.record.log import note_serve
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST
@@ -47,8 +47,7 @@ def serve(s: Run, me: int, message: int, now_ps: int) -> int:
 @kernel
 def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
     """Unpack a message; returns the end of that."""
-    m = messages(s)[message]
-    end_ps = now_ps + receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
+    end_ps = now_ps + unpacking_ps(s, me, message)
     pes(s)[me].in_hand = message
     s.consumed = 1
     s.activities += 1
