@@ -212,7 +212,7 @@ def _note(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> None:
     if s.logs and by_thread:
         note_answer(s, row, now_ps)
     elif s.logs:
-        notesend(s, me, row, now_ps)
+        note_send(s, me, row, now_ps)
     if s.record_counters and by_thread:
         count_message(s, messages(s)[row], 1)
     elif s.record_counters:
