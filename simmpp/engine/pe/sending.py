@@ -39,7 +39,7 @@ from simmpp.engine.pe.bounds.credits import take_owed
 from simmpp.engine.pe.costs import parts_ps, sending_ps
 from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import count_message, note_departure
-from simmpp.engine.record.log import note_answer
+from simmpp.engine.record.log import note_answer, note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
 from simmpp.policy.view import View
 
