@@ -34,7 +34,13 @@ MACHINES = {
     "shmem, thread": ("t3e-shmem", "thread"),
     "shmem, nic": ("t3e-shmem", "nic"),
 }
-POLICIES = ("object", "concurrent", "ray")
+POLICIES = {
+    "object": PolicyParameters("object"),
+    "concurrent": PolicyParameters("concurrent"),
+    "refreshed": PolicyParameters("concurrent", refresh_ps=10**9),
+    "ray": PolicyParameters("ray"),
+}
+"""*refreshed* is concurrent dataflow that tells its load, or gets others', each millisecond."""
 FRACTIONS = (Fraction(1, 64), *(Fraction(n, 100) for n in (5, 10, 30, 50, 80, 90)))
 PLACES = {
     "mountain:5": (64,),
@@ -59,8 +65,8 @@ def runs() -> Iterator[dict[str, object]]:
                 )
                 for name, (preset, service) in MACHINES.items():
                     made = machine(preset, {"service": service}, processors)
-                    for policy in POLICIES:
-                        result = simulate(workload, made, placement, PolicyParameters(policy))
+                    for policy, parameters in POLICIES.items():
+                        result = simulate(workload, made, placement, parameters)
                         told = (scene, processors, float(fraction), name, policy)
                         numbers = (result.makespan_ps, result.messages)
                         yield dict(zip(COLUMNS, (*told, *numbers), strict=True))
@@ -120,10 +126,11 @@ def main() -> None:
             classical = told(
                 ratios(of, (name, "ray"), (name, "object"), scene=scene, processors=64)
             )
-            profit = told(
-                ratios(of, (name, "object"), (name, "concurrent"), scene=scene, processors=64)
+            profits = (
+                told(ratios(of, (name, "object"), (name, policy), scene=scene, processors=64))
+                for policy in ("concurrent", "refreshed")
             )
-            print(f"{name:14} {scene:10} ray / object {classical}, object / concurrent {profit}")
+            print(f"{name:14} {scene:10} ray / object {classical}, profits {', '.join(profits)}")
         for processors in PLACES["tetra:5"]:
             here = {"scene": "tetra:5", "processors": processors, "least": 0.8}
             found = told(ratios(of, (name, "ray"), (name, "object"), **here))
