@@ -88,15 +88,20 @@ def times() -> Times:
 
 
 def ratios(
-    of: Times, above: tuple[str, str], below: tuple[str, str], **where: object
+    of: Times,
+    above: tuple[str, str],
+    below: tuple[str, str],
+    *,
+    least: float = 0,
+    most: float = 1,
+    **where: object,
 ) -> list[float]:
-    """T of one machine and policy over T of another, at all points where ``where`` holds."""
+    """T of one machine and policy over T of another, where ``where`` holds and x is in between."""
     found = []
-    for (scene, processors, fraction, name, policy), time_ps in of.items():
-        here = {"scene": scene, "processors": processors, "fraction": fraction}
-        if (name, policy) != above or any(here[k] != v for k, v in where.items() if k in here):
-            continue
-        if fraction <= float(where.get("most", 1)) and fraction >= float(where.get("least", 0)):
+    for (scene, processors, fraction, *what), time_ps in of.items():
+        here = {"scene": scene, "processors": processors}
+        is_there = all(here[key] == value for key, value in where.items())
+        if (*what,) == above and is_there and least <= fraction <= most:
             found.append(time_ps / of[scene, processors, fraction, *below])
     return found
 
@@ -132,8 +137,8 @@ def main() -> None:
             )
             print(f"{name:14} {scene:10} ray / object {classical}, profits {', '.join(profits)}")
         for processors in PLACES["tetra:5"]:
-            here = {"scene": "tetra:5", "processors": processors, "least": 0.8}
-            found = told(ratios(of, (name, "ray"), (name, "object"), **here))
+            here = {"scene": "tetra:5", "processors": processors}
+            found = told(ratios(of, (name, "ray"), (name, "object"), least=0.8, **here))
             print(f"{name:14} F3a {processors:4}: {found}")
 
 
