@@ -137,8 +137,8 @@ def main() -> None:
             )
             print(f"{name:14} {scene:10} ray / object {classical}, profits {', '.join(profits)}")
         for processors in PLACES["tetra:5"]:
-            here = {"scene": "tetra:5", "processors": processors}
-            found = told(ratios(of, (name, "ray"), (name, "object"), least=0.8, **here))
+            both = (name, "ray"), (name, "object")
+            found = told(ratios(of, *both, least=0.8, scene="tetra:5", processors=processors))
             print(f"{name:14} F3a {processors:4}: {found}")
 
 
