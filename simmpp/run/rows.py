@@ -94,8 +94,13 @@ def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:
 
 
 def finished(seeds: Seeds) -> Seeds:
-    """Those that did not fail."""
-    return {seed: row for seed, row in seeds.items() if not row["error"]}
+    """Those that came to their end."""
+    return {seed: row for seed, row in seeds.items() if has_ended(row)}
+
+
+def has_ended(row: Row) -> bool:
+    """Whether it is of a run that came to its end; others failed, did not fit or were stuck."""
+    return not row["error"] and row["makespan_ps"] != ""
 
 
 def pairs(above: Seeds, below: Seeds) -> list[tuple[Row, Row]]:
