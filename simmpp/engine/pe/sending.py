@@ -194,7 +194,7 @@ def send(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> int:
     pe.messages_sent += 1
     sent_by_kind(s)[m.kind] += 1
     s.bytes_sent += m.payload_bytes + s.header_bytes
-    if s.bounded:
+    if s.bounded and s.sends:
         m.credit = take_owed(s, me, m.destination)
     if s.packing != SINGLY:
         _count_parts(s, row)
