@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,18 @@ def placement_of(
         transient=transient,
         pixel_pes=np.array(pixel_pes, np.int32),
     )
+
+
+def on_islands(placement: Placement, islands: int) -> Placement:
+    """The same with that many islands: of PEs at one place in each, one owns what they all did."""
+    island = placement.processors // islands
+    owners = placement.owners % island
+    offsets, objects = placement.replica_offsets, placement.replica_objects
+    rows = [objects[i:j] for i, j in pairwise(offsets.tolist())]
+    replicas = [row[owners[row] != k % island].tolist() for k, row in enumerate(rows)]
+    pixel_pes, transient = placement.pixel_pes.tolist(), placement.transient
+    again = placement_of(owners.tolist(), pixel_pes, placement.processors, replicas, transient)
+    return replace(again, islands=islands)
 
 
 def everywhere(placement: Placement) -> Placement:
@@ -262,6 +275,21 @@ def _levels(rng: np.random.Generator, machine: Machine) -> tuple[Level, ...]:
     )
 
 
+def served(case: Case, service: str, seed: int) -> Case:
+    """The case where another serves, at costs of the same kind, from a stream of its own."""
+    rng, machine = np.random.default_rng((seed, 4)), case.machine
+    costs = (0, machine.latency_ps, machine.send_startup_ps, machine.probe_ps)
+    handoff_ps, get_startup_ps, completion_ps = (int(_pick(rng, costs)) for _ in range(3))
+    machine = replace(
+        machine,
+        service=service,
+        handoff_ps=handoff_ps,
+        get_startup_ps=get_startup_ps,
+        completion_ps=completion_ps,
+    )
+    return replace(case, machine=machine)
+
+
 def with_costs_of_today(machine: Machine, seed: int) -> Machine:
     """The machine, in some cases with parts that have a tree of their own.
 
@@ -327,7 +355,15 @@ def random_case(seed: int) -> Case:
     order = _pick(rng, ("depth-first", "breadth-first"))
     machine = replace(machine, contention=_pick(rng, CONTENTIONS))
     machine = with_costs_of_today(on_some_network(machine, seed), seed)
+    placement = on_islands(placement, _some_islands(machine.processors, seed))
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def _some_islands(processors: int, seed: int) -> int:
+    """Two thirds of the machines are whole; draws from a stream of its own."""
+    rng = np.random.default_rng((seed, 16))
+    numbers = [n for n in range(1, processors + 1) if processors % n == 0]
+    return int(_pick(rng, (1, 1, _pick(rng, numbers))))
 
 
 def on_torus(case: Case) -> Case:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from builders import Case
-from oracles.ledger import Outcome, Slice
+from oracles.ledger import Activity, Outcome, Slice, in_order, who
 from oracles.machine import simulate as simulate_slowly
 
 from simmpp.engine.record.log import EVENT_KINDS
@@ -55,7 +55,7 @@ def outcome_of(result: Result) -> Outcome:
             arrivals.append((time_ps, r["pe"], *sent))
         else:
             slices.append(Slice(begin=time_ps, what=event, end=r.pop("end_ps"), **r))
-    slices.sort(key=lambda s: s.pe)
+    slices.sort(key=who)
     tested_rays = [] if result.tested_rays is None else result.tested_rays.tolist()
     tested_objects = [] if result.tested_objects is None else result.tested_objects.tolist()
     return Outcome(
@@ -72,6 +72,7 @@ def outcome_of(result: Result) -> Outcome:
         compute_ps=result.compute_ps.tolist(),
         communication_ps=result.communication_ps.tolist(),
         waiting_ps=result.waiting_ps.tolist(),
+        service_ps=result.service_ps.tolist(),
         peak_rays=result.peak_rays,
         peak_bytes=result.peak_bytes,
         events=result.events,
@@ -84,13 +85,15 @@ def outcome_of(result: Result) -> Outcome:
     )
 
 
-def activities_of(slices: list[Slice]) -> list[tuple[int, int, str, int, int]]:
+def activities_of(slices: list[Slice]) -> list[Activity]:
     """(begin, PE, kind, end, tests): what is sent belongs to the activity that it follows."""
-    activities: list[tuple[int, int, str, int, int]] = []
+    of_pes: list[Activity] = []
+    of_threads: list[Activity] = []
     for each in slices:
-        if each.what == "send" and activities:
-            activities[-1] = (*activities[-1][:3], each.end, activities[-1][4])
-        else:
-            kind = f"receive {MESSAGE_KINDS[each.kind]}" if each.what == "receive" else each.what
-            activities.append((each.begin, each.pe, kind, each.end, each.tests))
-    return sorted(activities, key=lambda row: row[:2])
+        own = of_threads if each.what in ("serve", "answer") else of_pes
+        if each.what in ("send", "answer") and own:
+            own[-1] = (*own[-1][:3], each.end, own[-1][4])
+        elif each.what != "answer":  # that of a network card is no activity
+            kind = f"{each.what} {MESSAGE_KINDS[each.kind]}" if each.kind >= 0 else each.what
+            own.append((each.begin, each.pe, kind, each.end, each.tests))
+    return in_order(of_pes + of_threads)

@@ -103,6 +103,7 @@ def _print_file(name: str, may_run: bool) -> None:
 def _print_layers(layers: Layers, contention: str) -> None:
     of = "a choice: torus, levels or fat-tree"
     rows = [("topology", layers.words["topology"], "", of), *lines_of(layers)]
+    rows.append(("service", layers.words["service"], "", "a choice: pe, thread or nic"))
     rows.append(("contention", contention, "", _FREE))
     _print(rows)
 

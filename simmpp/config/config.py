@@ -25,11 +25,11 @@ from simmpp.config.own_policies import with_files
 from simmpp.config.reading import Line, Reading
 from simmpp.config.settings import Settings
 from simmpp.machine.layers import Layers
-from simmpp.machine.machine import TORUS, Machine
+from simmpp.machine.machine import POLLED, TORUS, Machine
 from simmpp.machine.presets import Preset, layered
 from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
-from simmpp.placement.placement import Memory
+from simmpp.placement.placement import Memory, island_of
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.ray_source import RaySource
@@ -214,11 +214,24 @@ def point_at(config: Config, axes: Mapping[str, Axis], chosen: Mapping[str, int]
     except ConfigError as error:
         key = ("machine", *error.where.split("."))
         raise misplaced(key, error.problem, point.places) from None
+    try:
+        island_of(point.settings.placement, point.processors)
+    except ConfigError as error:
+        raise misplaced(tuple(error.where.split(".")), error.problem, point.places) from None
     method = point.settings.method
-    if METHODS[method].knows_torus_alone and machine.topology != TORUS:
-        problem = f"value {method!r}: expected {SIMULATE} where the topology is {machine.topology}"
+    if METHODS[method].knows_papers_machine_alone and (other := _other(point, machine)):
+        problem = f"value {method!r}: expected {SIMULATE} where {other}"
         raise misplaced(("method",), problem, point.places)
     return point
+
+
+def _other(point: Config, machine: Machine) -> str:
+    """What the paper's model does not know of a point; empty if there is nothing."""
+    if machine.topology != TORUS:
+        return f"the topology is {machine.topology}"
+    if machine.service != POLLED:
+        return f"the service is {machine.service}"
+    return "there are islands" if point.settings.placement.islands > 1 else ""
 
 
 def changed(config: Config, assignments: Iterable[tuple[str, object, KeyPath]]) -> Config:

@@ -57,14 +57,21 @@ def _own_shares(points: Sequence[Config], axes: Iterable[str]) -> Iterator[str]:
     """Fractions up to what a PE owns, where there are several, and are no room for fetched ones."""
     by_share = [point for point in points if point.memory.bytes is None]
     by_share = [point for point in by_share if point.memory.kept != point.memory.fraction]
-    pairs = [(point.processors, point.memory.fraction) for point in by_share]
+    pairs = [(_sharing(point), point.memory.fraction) for point in by_share]
     if pairs and {"processors", "memory.fraction"} <= set(axes):  # they are multiplied
         pairs = list(product(*zip(*pairs, strict=True)))
-    for nb in dict.fromkeys(nb for nb, _ in pairs):
-        less = dict.fromkeys(f"{float(x):g}" for of, x in pairs if of == nb and x * nb <= 1)
+    for sharing in dict.fromkeys(sharing for sharing, _ in pairs):
+        n, of_what = sharing
+        less = dict.fromkeys(f"{float(x):g}" for of, x in pairs if of == sharing and x * n <= 1)
         if len(less) > 1:
-            owned = f"each of {nb} PEs owns 1/{nb} of the scene and holds that"
+            owned = f"each of {n} PEs{of_what} owns 1/{n} of the scene and holds that"
             yield f"memory.fraction {', '.join(less)} come to the same: {owned}"
+
+
+def _sharing(point: Config) -> tuple[int, str]:
+    """How many PEs own the scene together, and what they are of."""
+    islands = point.settings.placement.islands
+    return point.processors // islands, f" of each of {islands} islands" if islands > 1 else ""
 
 
 def _ignored(config: Config, swept: Sequence[str]) -> Iterator[str]:

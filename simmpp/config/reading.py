@@ -35,7 +35,14 @@ _FOLDER = files("simmpp") / "config" / "readings"
 _SUFFIXES = (".yaml", ".yml")
 DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
 _NOT_IN_ONE: dict[str, tuple[str, ...]] = {
-    MACHINE: ("shape", "topology", "levels", "fat_tree", "contention"),  # no costs, but choices
+    MACHINE: (
+        "shape",
+        "topology",
+        "levels",
+        "fat_tree",
+        "service",
+        "contention",
+    ),  # no costs, but choices
     POLICY: ("name", "label", "file", "set"),  # a reading is no code
 }
 """Keys of a configuration that no reading sets."""

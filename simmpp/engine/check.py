@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simmpp.common.errors import ConfigError, WorkloadError
 from simmpp.common.validate import MOST_COUNT, require_whole, require_word
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import SERVICES, Machine
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
@@ -57,6 +57,7 @@ def _check_machine(machine: Machine) -> None:
         elif not isinstance(value, str | dict):
             require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
     require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
+    require_word(f"machine {machine.name}: service", machine.service, SERVICES)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
     topology_of(machine)  # looks itself
@@ -68,7 +69,9 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
         raise ConfigError(f"the placement is for {placement.processors} PEs, the machine has {nb}")
     n_replicas = len(placement.replica_objects)
     fits = {
-        "owners": len(placement.owners) == n_objects and _lie_below(placement.owners, nb),
+        "islands": placement.islands >= 1 and nb % placement.islands == 0,
+        "owners": len(placement.owners) == n_objects
+        and _lie_below(placement.owners, nb // max(placement.islands, 1)),
         "replica_offsets": is_cut(placement.replica_offsets, nb, 0, n_replicas),
         "replica_objects": _lie_below(placement.replica_objects, n_objects),
         "pixel_pes": len(placement.pixel_pes) == workload.n_primaries

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from simmpp.common.compiled import kernel, njit
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.records import NONE, SLEEP, WOKEN, Row, Run
+from simmpp.engine.arrays.records import BY_THREAD, NONE, SLEEP, WOKEN, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
 from simmpp.engine.event_heap import (
     HEAD,
@@ -23,12 +24,16 @@ from simmpp.engine.event_heap import (
 )
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
+from simmpp.engine.pe.gets import is_get, send_back
+from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking, starved
 
-EVENTS_PER_CALL = 1 << 20
-"""So that progress is shown and Ctrl-C is heard."""
+FIRST_EVENTS, MOST_EVENTS = 1 << 10, 1 << 20
+"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: twice as many each
+time, until that takes CALL_S; half as many if it takes twice as long, as hooks may be slow."""
+CALL_S = 0.1
 FINISHED, PAUSED, FULL, STARVED = range(4)
 
 
@@ -49,11 +54,15 @@ class CompiledRun:
 
         Raises ModelError if rays are left and nothing is scheduled.
         """
-        status = FINISHED if self.state["rays_left"] == 0 or self._needs_no_events() else PAUSED
+        n_events, status = FIRST_EVENTS, PAUSED
+        if self.state["rays_left"] == 0 or self._needs_no_events():
+            status = FINISHED
         while status in (PAUSED, FULL):
             self.state.ensure_room(self._next_ps())
             self.state.ensure_heap()
-            status = _run(self.state.runs, EVENTS_PER_CALL)
+            began_s = time.monotonic()
+            status = _run(self.state.runs, n_events)
+            n_events = _as_many(n_events, time.monotonic() - began_s)
             if self._progress is not None:
                 self._progress(self.state["rays_left"])
         if status == STARVED:
@@ -75,13 +84,22 @@ class CompiledRun:
         return int(events[0]["time_ps"]) if len(events) else 0
 
 
+def _as_many(n_events: int, took_s: float) -> int:
+    """How many events are handled at the next call."""
+    if took_s < CALL_S:
+        return min(2 * n_events, MOST_EVENTS)
+    return max(n_events // 2, 1) if took_s > 2 * CALL_S else n_events
+
+
 @njit
 def _run(runs: NDArray[np.void], n_events: int) -> int:
     """Handle up to ``n_events`` events; the first call begins with all PEs at time 0."""
     s: Run = runs[0]
     if s.activities == 0 and s.n_events == 0:
         for me in range(s.processors):
-            processes(s)[me].first = NONE
+            server = processes(s)[s.processors + me]
+            processes(s)[me].first = server.first = NONE
+            server.asleep = 1
             _schedule_instant(s, me, 0)
     for _ in range(n_events):
         if s.n_events == 0:
@@ -101,22 +119,36 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         pop(s)
         if message != NONE:
             _arrive(s, message, time_ps)
-        elif number == processes(s)[rank - INSTANT].instants:
+        elif number != processes(s)[rank - INSTANT].instants:
+            s.n_stale -= 1  # of a sleeper whom a message has woken before
+        elif rank - INSTANT < s.processors:
             _step(s, rank - INSTANT, time_ps)
-        else:  # of a sleeper whom a message has woken before
-            s.n_stale -= 1
+        else:
+            _serve(s, rank - INSTANT - s.processors, time_ps)
     return PAUSED
 
 
 @kernel
 def _arrive(s: Run, message: int, now_ps: int) -> None:
-    """A message lies in the inbox of its destination, and wakes it if it sleeps."""
-    me = messages(s)[message].destination
-    process = processes(s)[me]
-    link(messages(s), process, message)
+    """A message lies in the inbox of its destination, or is answered by the network card there."""
     s.arrivals += 1
     if s.logs:
         note_arrival(s, message)
+    m = messages(s)[message]
+    if is_get(s, m):
+        send_back(s, message)
+        _travel(s, message)
+    elif s.service == BY_THREAD:
+        _deliver(s, message, s.processors + m.destination, now_ps)
+    else:
+        _deliver(s, message, m.destination, now_ps)
+
+
+@kernel
+def _deliver(s: Run, message: int, me: int, now_ps: int) -> None:
+    """A message lies in the inbox of a PE or thread, and wakes it if it sleeps."""
+    process = processes(s)[me]
+    link(messages(s), process, message)
     if process.asleep:
         process.asleep = 0
         if process.phase == WOKEN:
@@ -135,16 +167,40 @@ def _step(s: Run, me: int, now_ps: int) -> None:
     process.phase = s.phase
     if s.consumed:
         process.first = following
+    _go_on(s, me, next_ps)
+
+
+@kernel
+def _serve(s: Run, me: int, now_ps: int) -> None:
+    """One instant of the thread of a PE."""
+    process = processes(s)[s.processors + me]
+    message = process.first
+    following = messages(s)[message].next if message != NONE else NONE
+    next_ps = serve(s, me, message, now_ps)
+    if s.consumed:
+        process.first = following
+    if s.handed != NONE:
+        _deliver(s, s.handed, me, now_ps)
+    _go_on(s, s.processors + me, next_ps)
+
+
+@kernel
+def _go_on(s: Run, me: int, next_ps: int) -> None:
+    """What a PE or thread has sent travels; its next instant comes, or it sleeps."""
     for i in range(s.n_sent):
-        row = outbox(s)[i]
-        m = messages(s)[row]
-        if s.contends:
-            push(s, m.head_ps, HEAD + m.source, m.number, row)
-        else:
-            push(s, m.arrival_ps, _arrival_rank(m), m.number, row)
-    process.asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
+        _travel(s, outbox(s)[i])
+    processes(s)[me].asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
     if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
+
+
+@kernel
+def _travel(s: Run, message: int) -> None:
+    m = messages(s)[message]
+    if s.contends:
+        push(s, m.head_ps, HEAD + m.source, m.number, message)
+    else:
+        push(s, m.arrival_ps, _arrival_rank(m), m.number, message)
 
 
 @kernel

@@ -18,6 +18,7 @@ from simmpp.engine.arrays.records import (
     PACKING,
     PIGGYBACK,
     SAMPLED,
+    SERVICE,
 )
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
@@ -32,7 +33,7 @@ from simmpp.engine.residency import (
 from simmpp.engine.state import State
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import USER_COPIED_AS
+from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
 from simmpp.machine.torus import LINKS
 from simmpp.placement.placement import Placement
@@ -101,8 +102,9 @@ def _sizes(
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
-    each = nb if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    pairs = nb * nb if parameters.rules.talks else min(nb * nb, 2 * workload.n_tests * each)
+    each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
+    known = nb * placement.island
+    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -128,7 +130,7 @@ def _most_kept(workload: Workload, placement: Placement) -> int:
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:
     topology = topology_of(machine)
-    pack, unpack = ((*each, each[USER_COPIED_AS]) for each in (machine.pack, machine.unpack))
+    pack, unpack = copies(machine)
     costs = [(cost.fixed_ps, cost.bytes_per_s) for cost in (*pack, *unpack)]
     return {
         "itinerary_offsets": workload.itinerary_offsets,
@@ -150,7 +152,7 @@ def _policy_views(
     """(1,) VIEW with what stays as it is in it; (nb,) for a policy with a memory."""
     nb = placement.processors
     views = np.zeros(nb if _remembers(parameters.rules) else 1, VIEW)
-    views["nb"], views["initial_load"] = nb, workload.n_primaries // nb
+    views["nb"], views["initial_load"] = placement.island, workload.n_primaries // nb
     for name in NUMBERS:
         views[name] = _in_rays(getattr(parameters, name), workload, placement)
     own = parameters.numbers
@@ -175,8 +177,10 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
     return {
         "processors": machine.processors,
+        "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
+        "service": SERVICE[machine.service],
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
@@ -232,7 +236,9 @@ def _deal(state: State, placement: Placement) -> None:
     """Give primary rays to the PEs of their pixels, in pixel order."""
     n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
     pes, ends = state.pes, np.cumsum(n_pixels)
-    pes["first"] = NONE
+    pes["first"] = pes["in_hand"] = NONE
+    pes["place"] = np.arange(placement.processors) % placement.island
+    pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
     for name in ("n_ready", "load", "settled_load", "sampled_load", "peak_rays"):
         pes[name] = n_pixels

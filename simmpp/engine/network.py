@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import NONE, Row, Run
+from simmpp.engine.arrays.records import BY_PE, NONE, Row, Run
 from simmpp.engine.arrays.views import free_ps, messages, topology
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.topology import (
@@ -16,13 +16,19 @@ from simmpp.machine.topology import (
 )
 from simmpp.machine.transfer import transfer_ps
 
+AT_THE_START = -(1 << 31)
+"""Before the port of the sender; no topology has that node."""
+
 
 @kernel
 def depart(s: Run, m: Row) -> None:
     """A message leaves its sender: when it arrives, or when its head is at the first link."""
     n_bytes = m.payload_bytes + s.header_bytes
     if s.contends:
-        inject(s, m)
+        if s.service == BY_PE:
+            inject(s, m)
+        else:
+            m.at, m.head_ps, m.arrival_ps = AT_THE_START, m.depart_ps, NONE
     else:
         m.arrival_ps = m.depart_ps + flight_ps(s, m.source, m.destination, n_bytes)
 
@@ -36,10 +42,11 @@ def flight_ps(s: Run, source: int, destination: int, n_bytes: int) -> int:
 
 @kernel
 def inject(s: Run, m: Row) -> None:
-    """Take the port of the sender, which no one else uses and which its messages reach in order.
+    """Take the port of the sender.
 
-    So it can be taken now, before the clock says so. Any other port or link is taken when the head
-    gets there: a message that departs later may be there sooner.
+    No one else uses it and its messages reach it in order, so it can be taken now, before the clock
+    says so, unless a thread or a network card sends as well. Any other port or link is taken when
+    the head gets there: a message that departs later may be there sooner.
     """
     n_bytes = m.payload_bytes + s.header_bytes
     m.busy_ps = transfer_ps(n_bytes, bytes_per_s(topology(s), m.source, m.destination))
@@ -51,11 +58,14 @@ def inject(s: Run, m: Row) -> None:
 
 @kernel
 def move_head(s: Run, message: int) -> int:
-    """The head of a message is at a link or at the last port: it takes it as soon as that is free.
+    """The head of a message is at a link or port: it takes it as soon as that is free.
 
     Returns when the head is at the next one, or when the message arrives, which is known then.
     """
     m = messages(s)[message]
+    if m.at == AT_THE_START:
+        inject(s, m)
+        return m.head_ps
     n_bytes = m.payload_bytes + s.header_bytes
     if m.at == m.destination:
         held = held_ps(topology(s), n_bytes, m.busy_ps)

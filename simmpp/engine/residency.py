@@ -49,8 +49,11 @@ def holder_arrays(workload: Workload, placement: Placement, *, wanted: bool) -> 
         return {"holder_offsets": np.zeros(0, np.int64), "holder_pes": np.zeros(0, np.int32)}
     nb, n_objects = placement.processors, workload.n_objects
     replicas = np.repeat(np.arange(nb, dtype=np.int32), np.diff(placement.replica_offsets))
-    objects = np.concatenate([np.arange(n_objects), placement.replica_objects])
-    holders = np.concatenate([placement.owners, replicas]).astype(np.int32)
+    firsts = np.arange(0, nb, placement.island)  # of each island, whose owners are counted from it
+    owners = np.add.outer(firsts, placement.owners).reshape(-1)
+    owned = np.tile(np.arange(n_objects), placement.islands)
+    objects = np.concatenate([owned, placement.replica_objects])
+    holders = np.concatenate([owners, replicas]).astype(np.int32)
     counts = np.bincount(objects, minlength=n_objects)
     return {
         "holder_offsets": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
@@ -62,14 +65,11 @@ def resident_bytes(workload: Workload, placement: Placement, everything: bool) -
     """Bytes of the objects resident on each PE: (nb,) int64."""
     if everything:
         return np.full(placement.processors, workload.object_bytes.sum(), np.int64)
-    total = np.zeros(placement.processors, np.int64)
-    _add_bytes(
-        total,
-        placement.owners,
-        placement.replica_offsets,
-        placement.replica_objects,
-        workload.object_bytes,
-    )
+    owned = np.zeros(placement.island, np.int64)
+    np.add.at(owned, placement.owners, workload.object_bytes)
+    total = np.tile(owned, placement.islands)
+    offsets, objects = placement.replica_offsets, placement.replica_objects
+    _add_bytes(total, offsets, objects, workload.object_bytes)
     return total
 
 
@@ -91,13 +91,10 @@ def _sort_rows(objects: NDArray[np.int32], offsets: NDArray[np.int64]) -> None:
 @njit
 def _add_bytes(
     total: NDArray[np.int64],
-    owners: NDArray[np.int32],
     offsets: NDArray[np.int64],
     objects: NDArray[np.int32],
     object_bytes: NDArray[np.int64],
 ) -> None:
-    for item in range(owners.size):
-        total[owners[item]] += object_bytes[item]
     for pe in range(offsets.size - 1):
         for at in range(offsets[pe], offsets[pe + 1]):
             total[pe] += object_bytes[objects[at]]

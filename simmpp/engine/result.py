@@ -43,6 +43,8 @@ COLUMNS = (
     "events",
 )
 """Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
+SERVICE_COLUMNS = ("service_ps",)
+"""A further one, in rows of sweeps on machines whose threads serve."""
 PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
 """Further ones, in rows of sweeps in which a policy packs."""
 USER_COLUMNS = ("user_messages", "user_dropped")
@@ -80,6 +82,8 @@ class Result(Displayed):
     """(nb,) int64: startups, packing, unpacking, probes."""
     waiting_ps: NDArray[np.int64]
     """(nb,) int64: makespan - compute - communication."""
+    service_ps: NDArray[np.int64]
+    """(nb,) int64: time of each PE's thread, beside these; 0 where the machine has none."""
     pe_peak_rays: NDArray[np.int64]
     """(nb,) int64: most rays that each PE held."""
     pe_peak_bytes: NDArray[np.int64]
@@ -179,6 +183,7 @@ def concluded(
     makespan_ps = state["last_ray_ps"]
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
     communication_ps = state.pes["communication_ps"] - overrun_ps
+    late_ps = np.maximum(state.pes["served_until_ps"] - makespan_ps, 0)
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
     (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
@@ -200,6 +205,7 @@ def concluded(
         compute_ps=compute_ps,
         communication_ps=communication_ps,
         waiting_ps=waiting_ps,
+        service_ps=state.pes["service_ps"] - late_ps,
         pe_peak_rays=state.pes["peak_rays"].copy(),
         pe_peak_bytes=state.pes["peak_bytes"].copy(),
         pe_peak_object_bytes=state.pes["peak_object_bytes"].copy(),

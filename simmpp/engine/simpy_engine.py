@@ -19,8 +19,20 @@ from simpy.events import Event
 
 from simmpp.common.compiled import entry_point, njit
 from simmpp.common.errors import ModelError
-from simmpp.engine.arrays.records import BEGIN, MESSAGE, NONE, SLEEP, WOKEN
+from simmpp.engine.arrays.records import (
+    BEGIN,
+    BY_NIC,
+    BY_THREAD,
+    MESSAGE,
+    NONE,
+    SLEEP,
+    WOKEN,
+    Run,
+)
+from simmpp.engine.arrays.views import messages
 from simmpp.engine.network import move_head
+from simmpp.engine.pe.gets import is_get, send_back
+from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, starved
@@ -36,6 +48,21 @@ _PROGRESS_EVERY = 4096
 @njit
 def _step(runs: NDArray[np.void], me: int, phase: int, message: int, now_ps: int) -> int:
     return step(runs[0], me, phase, message, now_ps)
+
+
+@njit
+def _serve(runs: NDArray[np.void], me: int, message: int, now_ps: int) -> int:
+    return serve(runs[0], me, message, now_ps)
+
+
+@njit
+def _send_back(runs: NDArray[np.void], message: int) -> bool:
+    """Answer a message that has arrived, if a network card does."""
+    s: Run = runs[0]
+    if not is_get(s, messages(s)[message]):
+        return False
+    send_back(s, message)
+    return True
 
 
 @njit
@@ -58,10 +85,18 @@ class SimpyRun:
         self._note_arrival = entry_point(_note_arrival, state.runs, 0)
         self._move_head = entry_point(_move_head, state.runs, 0)
         self._step = entry_point(_step, state.runs, 0, 0, 0, 0)
+        self._by_thread = state["service"] == BY_THREAD
+        if self._by_thread:
+            self._serve = entry_point(_serve, state.runs, 0, 0, 0)
+        self._by_nic = state["service"] == BY_NIC
+        if self._by_nic:
+            self._send_back = entry_point(_send_back, state.runs, 0)
         self._environment = simpy.Environment()
-        self._inboxes: list[deque[int]] = [deque() for _ in state.pes]
-        self._asleep: list[Event | None] = [None] * len(state.pes)
-        self._numbers = [0] * len(state.pes)
+        # Of PEs, then of their threads.
+        servers = state.arrays["processes"]
+        self._inboxes: list[deque[int]] = [deque() for _ in servers]
+        self._asleep: list[Event | None] = [None] * len(servers)
+        self._numbers = [0] * len(servers)
         self._end = _happened(self._environment)
         self._ending = False
         self._logs = bool(state["logs"])
@@ -74,8 +109,10 @@ class SimpyRun:
         """
         if self.state["rays_left"] == 0:
             return
-        for me in range(len(self._inboxes)):
+        for me in range(len(self.state.pes)):
             self._environment.process(self._processing_element(me))
+            if self._by_thread:
+                self._environment.process(self._thread(me))
         events = 0
         while self._environment.peek() != simpy.core.Infinity and not self._end.processed:
             self._environment.step()
@@ -96,23 +133,45 @@ class SimpyRun:
             state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = step(runs, me, phase, message, now_ps)
-            phase, consumed, n_sent = state.report.tolist()
+            phase, consumed, n_sent, _ = state.report.tolist()
             if consumed:
                 inbox.popleft()
             if n_sent:
                 self._carry(n_sent)
             if runs["rays_left"][0] == 0 and not self._ending:
                 self._finish()
-            if next_ps == SLEEP or phase == WOKEN:
-                self._asleep[me] = asleep = _happened(environment)
-                if next_ps != SLEEP:
-                    self._schedule_waking(me, next_ps - now_ps)
-                yield asleep
-            else:
-                yield self._instant(me, next_ps - now_ps)
+            yield self._next(me, next_ps, wakes=phase == WOKEN)
+
+    def _thread(self, me: int) -> Generator[Event, None, None]:
+        """What receives for a PE: asleep until there is something."""
+        environment, state, pes = self._environment, self.state, len(self.state.pes)
+        inbox = self._inboxes[pes + me]
+        yield self._next(pes + me, SLEEP)
+        while True:
+            now_ps = environment.now
+            state.ensure_room(now_ps)
+            message = inbox[0] if inbox else NONE
+            next_ps = self._serve(state.runs, me, message, now_ps)
+            _, consumed, n_sent, handed = state.report.tolist()
+            if consumed:
+                inbox.popleft()
+            if handed != NONE:
+                self._put(me, handed)
+            self._carry(n_sent)
+            yield self._next(pes + me, next_ps)
+
+    def _next(self, me: int, next_ps: int, *, wakes: bool = False) -> Event:
+        """The next instant of a PE or thread, or what will wake it; that may be the time itself."""
+        delay_ps = next_ps - self._environment.now
+        if next_ps != SLEEP and not wakes:
+            return self._instant(me, delay_ps)
+        self._asleep[me] = asleep = _happened(self._environment)
+        if wakes:
+            self._schedule_waking(me, delay_ps)
+        return asleep
 
     def _instant(self, me: int, delay_ps: int) -> Event:
-        """The next instant of a PE."""
+        """The next instant of a PE or thread."""
         event = _happened(self._environment)
         self._schedule_instant(me, event, delay_ps)
         return event
@@ -143,12 +202,15 @@ class SimpyRun:
     def _carry(self, n_sent: int) -> None:
         """Messages of the outbox travel; with contention from one port or link to the next."""
         for row in self.state.arrays["outbox"][:n_sent].tolist():
-            if self._contends:
-                message = self.state.messages[row].item()
-                priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
-                self._schedule_head(row, priority, message[_HEAD_PS])
-            else:
-                self._let_arrive(row)
+            self._travel(row)
+
+    def _travel(self, row: int) -> None:
+        if self._contends:
+            message = self.state.messages[row].item()
+            priority = (2 << 64 | message[_SOURCE]) << 64 | message[_NUMBER]
+            self._schedule_head(row, priority, message[_HEAD_PS])
+        else:
+            self._let_arrive(row)
 
     def _schedule_head(self, row: int, priority: int, time_ps: int) -> None:
         head = _happened(self._environment, (row, priority))
@@ -176,17 +238,24 @@ class SimpyRun:
         self._environment.schedule(arrival, priority, delay_ps)
 
     def _deliver(self, arrival: Event) -> None:
-        """A message arrives: it lies in the inbox, and wakes its PE if that sleeps."""
+        """A message arrives, for its PE or thread; a network card answers what is for it."""
         destination, row = arrival.value
         self.arrivals += 1
-        self._inboxes[destination].append(row)
         if self._logs:
             self.state.ensure_room(self._environment.now)
             self._note_arrival(self.state.runs, row)
-        asleep = self._asleep[destination]
+        if self._by_nic and self._send_back(self.state.runs, row):
+            self._travel(row)
+        else:
+            self._put(destination + len(self.state.pes) * self._by_thread, row)
+
+    def _put(self, me: int, row: int) -> None:
+        """Put a message into the inbox of a PE or thread, and wake that if it sleeps."""
+        self._inboxes[me].append(row)
+        asleep = self._asleep[me]
         if asleep is not None:
-            self._asleep[destination] = None
-            self._schedule_instant(destination, asleep, 0)
+            self._asleep[me] = None
+            self._schedule_instant(me, asleep, 0)
 
     def _finish(self) -> None:
         """No ray is left: stop at the end of the last ray's last cost, before all else there."""

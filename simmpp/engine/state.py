@@ -79,11 +79,11 @@ class State:
                 self._grow("log", 2 * len(self.arrays["log"]))
 
     def ensure_heap(self) -> None:
-        """See to it that the heap has a place for every message and an instant of every PE.
+        """See to it that the heap has a place for every message and all that takes turns.
 
         And for twice the instants that have come to nothing, and one for each PE, as these grow.
         """
-        needed = len(self.messages) + len(self.pes) + 1
+        needed = len(self.messages) + len(self.arrays["processes"]) + 1
         if self["talks"]:
             needed += 2 * self["n_stale"] + len(self.pes)
         if len(self.arrays["heap"]) < needed:

@@ -34,7 +34,7 @@ OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
 """In the order of COPIED_KINDS."""
-_WORDS = ("topology", "contention")
+_WORDS = ("topology", "service", "contention")
 _NAME = re.compile("[A-Za-z][A-Za-z0-9_-]{0,30}")
 _LEVELS = "the blocks from the inside out by a name for each, such as node, group, system"
 
@@ -141,7 +141,7 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
         return given
 
     def words(self) -> dict[str, str]:
-        """The choices that are made: ``contention``, ``topology``."""
+        """The choices that are made: ``contention``, ``topology``, ``service``."""
         return {key: value for key, value in self if key in _WORDS and value is not None}
 
 

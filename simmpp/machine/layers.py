@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import in_words
 from simmpp.machine.constants import Constants
-from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Level
+from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Level
 from simmpp.machine.ranges import NO_RANGES, Known, Ranges, known_of
 from simmpp.machine.transfer import slower
 
@@ -31,7 +31,7 @@ class Layers:
     """As ``Constants.flat`` has them."""
     sources: dict[str, str] = field(default_factory=dict)
     """By the same keys."""
-    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS})
+    words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS, "service": POLLED})
     """The choices."""
     ranges: dict[str, tuple[int, int]] = field(default_factory=dict)
     """Of those that may be off, by the same keys."""

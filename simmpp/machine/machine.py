@@ -40,6 +40,7 @@ Shape = Annotated[tuple[int, int, int], *only(is_shape, Expect(_SHAPE, _THREE, "
 
 
 TORUS, LEVELS, FAT_TREE = TOPOLOGY_NAMES = ("torus", "levels", "fat-tree")
+POLLED, THREAD, NIC = SERVICES = ("pe", "thread", "nic")
 MOST_LEVELS = 16
 
 
@@ -191,6 +192,16 @@ class Machine:
     """Switches of the fat-tree; its links have the machine's bandwidth and hop latency."""
     port_gap_ps: Time = 0
     """With contention: a message keeps the ports of its PEs busy for that long at least."""
+    service: Annotated[str, *one_of(*SERVICES)] = POLLED
+    """Who answers requests: the PE when it polls, a thread beside it, or the network card, of whom
+    objects are got without the PE; the preset's when not given (see `machine.service`)."""
+    handoff_ps: Time = 0
+    """With a thread: the PE's cost of taking over a message that the thread has unpacked."""
+    get_startup_ps: Time = 0
+    """With nic: the PE's cost of starting a get, in place of sending a request."""
+    completion_ps: Time = 0
+    """With nic: the PE's cost of seeing what it has got, or what another has put into its memory,
+    in place of the receive startup."""
     contention: Literal["none", "links"] = "none"
     """What messages wait for: nothing, or links and ports that serve one at a time."""
     power_mw: Power = field(default=0, compare=False)
@@ -206,7 +217,13 @@ class Machine:
         """No message costs a PE more than this and its copy: ``limits`` counts on it."""
         of_levels = (level.send_startup_ps + level.receive_startup_ps for level in self.levels)
         startups_ps = max(self.send_startup_ps + self.receive_startup_ps, *of_levels, 0)
-        return startups_ps + self.probe_ps
+        one_sided_ps = self.handoff_ps + self.get_startup_ps + self.completion_ps
+        return startups_ps + self.probe_ps + one_sided_ps
+
+    @property
+    def uses(self) -> tuple[str, ...]:
+        """What its rows have columns of their own for."""
+        return ("threads",) if self.service == THREAD else ()
 
     @property
     def processors(self) -> int:

@@ -17,7 +17,7 @@ from simmpp.common.compiled import kernel
 from simmpp.common.errors import ConfigError
 from simmpp.common.validate import require_word
 from simmpp.machine import fat_tree, levels, torus
-from simmpp.machine.machine import FAT_TREE, LEVELS, TORUS, Machine
+from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Machine
 
 Network = NDArray[np.int64]
 """A topology as compiled code gets it: (n,) int64, its number in TOPOLOGIES and its own numbers."""
@@ -74,10 +74,11 @@ def topology_of(machine: Machine) -> Topology:
 
 
 def require_torus(machine: Machine) -> None:
-    """Raise ConfigError for what the analytical model does not know."""
-    if machine.topology != TORUS:
-        problem = f"value {machine.topology!r}: expected {TORUS} for the paper's analytical model"
-        raise ConfigError(problem, where="machine.topology")
+    """Raise ConfigError for what the analytical model does not know: its PEs serve themselves."""
+    for key, known in {"topology": TORUS, "service": POLLED}.items():
+        if (value := getattr(machine, key)) != known:
+            problem = f"value {value!r}: expected {known} for the paper's analytical model"
+            raise ConfigError(problem, where=f"machine.{key}")
 
 
 def network_of(topology: Topology) -> Network:

@@ -13,8 +13,13 @@ METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = result.COLUMNS
 """Integers of a run; empty where the method does not know."""
-BY_USE = {"packs": result.PACKED_COLUMNS, "talks": result.USER_COLUMNS}
-"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``)."""
+BY_USE = {
+    "packs": result.PACKED_COLUMNS,
+    "talks": result.USER_COLUMNS,
+    "threads": result.SERVICE_COLUMNS,
+}
+"""Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
+``Machine.uses``)."""
 FURTHER = tuple(name for names in BY_USE.values() for name in names)
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 

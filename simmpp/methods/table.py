@@ -27,8 +27,9 @@ class Method:
     """It reads the placement, and so the seed may have a part in what it says."""
     uses_engine: bool = True
     """It runs an event loop."""
-    knows_torus_alone: bool = False
-    """It has no meaning for machines whose PEs are joined otherwise."""
+    knows_papers_machine_alone: bool = False
+    """It has no meaning for machines whose PEs are joined, or requests served, otherwise, nor for
+    islands."""
     most_seeds: int | None = 1
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
 
@@ -36,10 +37,10 @@ class Method:
 METHODS: dict[str, Method] = {
     "simulate": Method(simulation, most_seeds=None),
     "analytical": Method(
-        analytical, DATAFLOWS, is_placed=False, uses_engine=False, knows_torus_alone=True
+        analytical, DATAFLOWS, is_placed=False, uses_engine=False, knows_papers_machine_alone=True
     ),
     "analytical-measured": Method(
-        analytical_measured, DATAFLOWS, uses_engine=False, knows_torus_alone=True
+        analytical_measured, DATAFLOWS, uses_engine=False, knows_papers_machine_alone=True
     ),
 }
 SIMULATE = "simulate"

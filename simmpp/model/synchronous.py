@@ -61,10 +61,12 @@ def synchronous(
 ) -> SynchronousResult:
     """Run a workload step by step.
 
-    Raises ConfigError for more than MOST_PROCESSORS, off the torus, or if tests and messages may
-    exceed the clock.
+    Raises ConfigError for more than MOST_PROCESSORS, off the torus, for islands, or if tests and
+    messages may exceed the clock.
     """
     require_torus(machine)
+    if placement.islands > 1:
+        raise ConfigError("the formulas know no islands: expected placement.islands 1")
     _check_processors(machine.processors)
     _check_clock(workload, machine, dataflow)
     world, nb = _world(workload, machine, placement, waits), machine.processors

@@ -11,8 +11,8 @@ from simmpp.common.randomness import generator
 from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
 from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
-from simmpp.placement.placement import Memory, Placement, PlacementRules
-from simmpp.placement.residents import as_csr, kept_count, replicas, resident_count
+from simmpp.placement.placement import Memory, Placement, PlacementRules, island_of
+from simmpp.placement.residents import Deal, as_csr, kept_count, replicas, resident_count
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
 
@@ -22,24 +22,28 @@ def place(
 ) -> Placement:
     """Place a workload on ``processors`` PEs; the same arguments give the same placement.
 
-    Raises ConfigError for a number of PEs or a seed that can't be.
+    Raises ConfigError for a number of PEs or a seed that can't be, and for islands that are not
+    equal.
     """
     require_kind("workload", workload, Workload)
     require_whole("processors", processors, 1, MOST_COUNT)
     require_kind("memory", memory, Memory)
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
+    island = island_of(rules, processors)
     starts_on = _starts(rules, workload, processors, seed)
-    owner_of = _owners(rules, workload, starts_on, processors, seed)
-    offsets, objects = replicas(workload, owner_of, starts_on, processors, memory, seed)
+    owner_of = _owners(rules, workload, starts_on, island, seed)
+    deal = Deal(workload, owner_of, starts_on, processors, island)
+    offsets, objects = replicas(deal, memory, seed)
     return Placement(
         processors=processors,
         owners=owner_of,
         replica_offsets=offsets,
         replica_objects=objects,
-        transient=kept_count(memory, workload.n_objects, len(objects), processors),
+        transient=kept_count(memory, deal, len(objects)),
         pixel_pes=starts_on,
         transient_bytes=memory.fetch or 0,
+        islands=rules.islands,
     )
 
 
@@ -50,11 +54,12 @@ def _starts(rules: PlacementRules, workload: Workload, processors: int, seed: in
 
 
 def _owners(
-    rules: PlacementRules, workload: Workload, starts_on: Ids, processors: int, seed: int
+    rules: PlacementRules, workload: Workload, starts_on: Ids, island: int, seed: int
 ) -> Ids:
+    """Owners within an island, in all the same; uses are those of all PEs at one place."""
     if rules.owners == "used":
-        return most_using(UsesByPE(workload, starts_on), workload.n_objects, processors)
-    return owners(rules.owners, workload.object_centroids, processors, seed)
+        return most_using(UsesByPE(workload, starts_on % island), workload.n_objects, island)
+    return owners(rules.owners, workload.object_centroids, island, seed)
 
 
 def draws(memory: Memory, rules: PlacementRules) -> bool:
@@ -85,18 +90,20 @@ def rotated(
     """
     n_objects = workload.n_objects
     starts_on = _starts(rules, workload, processors, seed)
-    owner_of = _owners(rules, workload, starts_on, processors, seed)
+    island = island_of(rules, processors)
+    owner_of = _owners(rules, workload, starts_on, island, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]
-    held = [_turns(_circle(owner_of, pe, seed), owner_of, counts) for pe in range(processors)]
+    circles = (_circle(owner_of, island, pe, seed) for pe in range(processors))
+    held = [_turns(circle, owner_of, counts) for circle in circles]
     return [
-        Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on)
+        Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on, islands=rules.islands)
         for of_fraction in zip(*held, strict=True)
     ]
 
 
-def _circle(owner_of: Ids, pe: int, seed: int) -> Ids:
+def _circle(owner_of: Ids, island: int, pe: int, seed: int) -> Ids:
     """The objects that a PE does not own, in random order."""
-    others = np.flatnonzero(owner_of != pe).astype(np.int32)
+    others = np.flatnonzero(owner_of != pe % island).astype(np.int32)
     return generator(seed, "rotated", pe).permutation(others)
 
 

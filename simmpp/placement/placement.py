@@ -18,7 +18,7 @@ from pydantic import (
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import SHARE_OF_TEXT, Share, Size
-from simmpp.common.strict import Expect, declared, mistake, parsed_by
+from simmpp.common.strict import Expect, declared, integer, mistake, parsed_by
 from simmpp.common.units import share, shown
 from simmpp.common.validate import MOST_COUNT, require_whole, whole
 
@@ -177,6 +177,27 @@ class PlacementRules:
     pixels: PixelRule = "blocks"
     """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
     squares of so many pixels along each side (cells)."""
+    islands: Annotated[int, *integer(1, MOST_COUNT)] = 1
+    """Equal parts of the machine, PEs in a row, that own the whole scene each and send one another
+    nothing; pixels are dealt over all PEs. As many as PEs: the replicated scene."""
+
+    @model_serializer(mode="wrap")
+    def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        plain: dict[str, Any] = handler(self)
+        if self.islands == 1:
+            del plain["islands"]
+        return plain
+
+
+def island_of(rules: PlacementRules, processors: int) -> int:
+    """PEs of an island.
+
+    Raises ConfigError, whose place is the key, if the islands are not equal.
+    """
+    if processors % rules.islands:
+        expected = f"expected a divisor of {processors}, the number of PEs"
+        raise ConfigError(f"value {rules.islands}: {expected}", where="placement.islands")
+    return processors // rules.islands
 
 
 @documented
@@ -187,7 +208,7 @@ class Placement:
     processors: int
     """Number of PEs, nb."""
     owners: NDArray[np.int32]
-    """(N,) int32: the PE that owns each object."""
+    """(N,) int32: the PE that owns each object; with islands of each, counted from its first PE."""
     replica_offsets: NDArray[np.int64]
     """(nb + 1,) int64: PE k holds replicas of
     replica_objects[replica_offsets[k]:replica_offsets[k + 1]] besides the objects it owns."""
@@ -199,6 +220,13 @@ class Placement:
     """(n0,) int32: the PE that each primary ray starts on."""
     transient_bytes: int = 0
     """Bytes of fetched objects that it holds, where a size says so; else 0."""
+    islands: int = 1
+    """Equal parts of the machine that own the whole scene each."""
+
+    @property
+    def island(self) -> int:
+        """PEs of an island: PE k is in number k // island, at place k % island."""
+        return self.processors // self.islands
 
     @property
     def effective_fraction(self) -> float:
@@ -206,4 +234,5 @@ class Placement:
         n_objects = len(self.owners)
         if n_objects == 0:
             return 1.0
-        return (n_objects + len(self.replica_objects)) / (self.processors * n_objects)
+        n_owned = self.islands * n_objects
+        return (n_owned + len(self.replica_objects)) / (self.processors * n_objects)

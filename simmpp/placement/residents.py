@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -18,27 +19,47 @@ Ranking = Callable[[int], Ids]
 """All objects that a PE does not own, the first to be replicated first."""
 
 
-def replicas(
-    workload: Workload, owners: Ids, pixel_pes: Ids, processors: int, memory: Memory, seed: int
-) -> tuple[NDArray[np.int64], Ids]:
+@dataclass(frozen=True, eq=False)
+class Deal:
+    """Who owns and who starts what."""
+
+    workload: Workload
+    owners: Ids
+    """Within each island."""
+    pixel_pes: Ids
+    processors: int
+    island: int
+    """PEs of an island."""
+
+    def is_owned(self, pe: int) -> NDArray[np.bool_]:
+        """Which objects a PE owns: (N,) bool."""
+        return self.owners == pe % self.island
+
+    def not_owned(self, ranked: Ids, pe: int) -> Ids:
+        """What of these objects a PE does not own, in their order."""
+        return ranked[self.owners[ranked] != pe % self.island]
+
+
+def replicas(deal: Deal, memory: Memory, seed: int) -> tuple[NDArray[np.int64], Ids]:
     """Replicas of each PE as CSR: offsets (nb + 1,) int64 and object ids int32.
 
     A PE's replicas are a prefix of one ranking of the objects it does not own, so a larger memory
     holds all that a smaller one held.
     """
-    ranking = _rankings(memory.residents, workload, owners, pixel_pes, seed)
+    workload, owners, island = deal.workload, deal.owners, deal.island
+    ranking = _rankings(memory.residents, deal, seed)
     if memory.hot > 0:
-        ranking = _hot_first(ranking, memory.hot, workload, owners)
-    n_own = np.bincount(owners, minlength=processors)
-    own_bytes = np.zeros(processors, np.int64)
+        ranking = _hot_first(ranking, memory.hot, deal)
+    n_own = np.bincount(owners, minlength=island)
+    own_bytes = np.zeros(island, np.int64)
     np.add.at(own_bytes, owners, workload.object_bytes)
     held: list[Ids] = []
-    for pe in range(processors):
+    for pe in range(deal.processors):
         if memory.bytes is None:
-            wanted = resident_count(memory.fraction, workload.n_objects) - int(n_own[pe])
+            wanted = resident_count(memory.fraction, workload.n_objects) - int(n_own[pe % island])
             held.append(ranking(pe)[:wanted] if wanted > 0 else np.zeros(0, np.int32))
         else:
-            room_bytes = memory.bytes - int(own_bytes[pe])
+            room_bytes = memory.bytes - int(own_bytes[pe % island])
             held.append(_fitting(workload.object_bytes, ranking(pe), room_bytes))
     return as_csr(held)
 
@@ -54,17 +75,18 @@ def resident_count(fraction: Fraction, n_objects: int) -> int:
     return half_up(fraction * n_objects)
 
 
-def kept_count(memory: Memory, n_objects: int, n_replicas: int, processors: int) -> int:
+def kept_count(memory: Memory, deal: Deal, n_replicas: int) -> int:
     """Fetched objects that a PE keeps: a share of all is rounded as the fraction's.
 
     ``n_replicas`` are those of all PEs together.
     """
-    kept = memory.kept
+    kept, n_objects = memory.kept, deal.workload.n_objects
     if isinstance(kept, int):
         return kept
     if isinstance(kept, Fraction):
         return resident_count(kept, n_objects)
-    return half_up(Fraction(n_objects + n_replicas, processors))  # residents of a PE, in the mean
+    # Residents of a PE, in the mean.
+    return half_up(Fraction(n_objects, deal.island) + Fraction(n_replicas, deal.processors))
 
 
 def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> Ids:
@@ -73,55 +95,56 @@ def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> I
     return ranked[: int(np.searchsorted(total, room_bytes, side="right"))]
 
 
-def _hot_first(ranking: Ranking, share: Fraction, workload: Workload, owners: Ids) -> Ranking:
+def _hot_first(ranking: Ranking, share: Fraction, deal: Deal) -> Ranking:
     """The most used objects for their size before all others, on every PE the same."""
+    workload = deal.workload
     n_hot = resident_count(share, workload.n_objects)
     per_byte = uses(workload) / np.maximum(workload.object_bytes, 1)
     hot = np.argsort(-per_byte, kind="stable")[:n_hot].astype(np.int32)
 
     def ranked(pe: int) -> Ids:
         others = ranking(pe)
-        return np.concatenate([hot[owners[hot] != pe], others[~np.isin(others, hot)]])
+        return np.concatenate([deal.not_owned(hot, pe), others[~np.isin(others, hot)]])
 
     return ranked
 
 
-def _rankings(
-    rule: Residents, workload: Workload, owners: Ids, pixel_pes: Ids, seed: int
-) -> Ranking:
+def _rankings(rule: Residents, deal: Deal, seed: int) -> Ranking:
+    workload = deal.workload
     ids = np.arange(workload.n_objects, dtype=np.int32)
     if rule == "random":
-        return lambda pe: generator(seed, "residents", pe).permutation(ids[owners != pe])
+        return lambda pe: generator(seed, "residents", pe).permutation(deal.not_owned(ids, pe))
     if rule == "hot":
         hottest = ids[np.lexsort((ids, -uses(workload)))]
-        return lambda pe: hottest[owners[hottest] != pe]
+        return lambda pe: deal.not_owned(hottest, pe)
     if rule == "used":
-        return _used(UsesByPE(workload, pixel_pes), workload, owners)
-    return lambda pe: _nearest(workload.object_centroids, owners, pe)
+        return _used(UsesByPE(workload, deal.pixel_pes), deal)
+    return lambda pe: _nearest(workload.object_centroids, deal.is_owned(pe))
 
 
-def _used(by_pe: UsesByPE, workload: Workload, owners: Ids) -> Ranking:
+def _used(by_pe: UsesByPE, deal: Deal) -> Ranking:
     """Objects by their uses on the PE for their size, then by those on all.
 
     Source: what a processor used last stays with it (Green and Paddon 1990), seen beforehand.
     """
+    workload = deal.workload
     n_bytes, ids = np.maximum(workload.object_bytes, 1), np.arange(workload.n_objects)
     on_all = uses(workload) / n_bytes
 
     def ranked(pe: int) -> Ids:
         order = np.lexsort((ids, -on_all, -(by_pe.of(pe) / n_bytes))).astype(np.int32)
-        return order[owners[order] != pe]
+        return deal.not_owned(order, pe)
 
     return ranked
 
 
-def _nearest(centroids: NDArray[np.float64], owners: Ids, pe: int) -> Ids:
+def _nearest(centroids: NDArray[np.float64], is_owned: NDArray[np.bool_]) -> Ids:
     """Objects by the distance of their centroid from the box of the PE's own centroids.
 
     A PE that owns nothing has no region; it takes objects in the order of their ids.
     """
-    others = np.flatnonzero(owners != pe).astype(np.int32)
-    own = centroids[owners == pe]
+    others = np.flatnonzero(~is_owned).astype(np.int32)
+    own = centroids[is_owned]
     if len(own) == 0:
         return others
     low, high = own.min(axis=0), own.max(axis=0)

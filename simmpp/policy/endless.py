@@ -1,8 +1,8 @@
 """Loops in a policy's file are counted: one that never ends is an error like any other.
 
-Nothing could end it from outside. Compiled code hears no signal, and to end a worker's process
-would end that of a cluster for all who use it. So each loop of the file gets two lines, which cost
-a hook a nanosecond a turn.
+Compiled code hears no signal and no timeout before it returns. So each loop of the file gets two
+lines, which cost a hook a nanosecond a turn. What is left, such as loops in functions that loops
+call, meets ``sweeps.executors.ended_after``: the worker is ended, where it is a sweep's own.
 """
 
 from __future__ import annotations

@@ -26,9 +26,9 @@ class View:
     now_ps: int
     """The PE's clock, in picoseconds since the start."""
     me: int
-    """The number of this PE, from 0."""
+    """The number of this PE, from 0; with islands in its island, as those of all that it sees."""
     nb: int
-    """How many PEs there are."""
+    """How many PEs there are, with islands in its own."""
     load: int
     """Rays that this PE holds, ready or waiting."""
     ready: int
@@ -39,7 +39,7 @@ class View:
     """1 if no ray was ready and the inbox empty when this dispatch began, else 0; ``keep`` and
     ``heard``: 0; ``idle``: 1."""
     initial_load: int
-    """Primary rays / nb, rounded down: what is known of a PE before it is heard."""
+    """All primary rays / all PEs, rounded down: what is known of a PE before it is heard."""
     other: int
     """The other PE; ``idle``: -1, or for the hook to write: the PE that ``words`` go to."""
     known_load: int

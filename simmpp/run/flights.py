@@ -19,8 +19,8 @@ STARTUPS = ("send_startup_ps", "receive_startup_ps")
 class Flight(NamedTuple):
     """Means over all pairs of different PEs."""
 
-    startups_ps: int
-    """Of both PEs."""
+    send_startup_ps: int
+    receive_startup_ps: int
     latency_ps: int
     bytes_per_s: int
     """That of the mean time of a byte; 0: unlimited."""
@@ -29,31 +29,33 @@ class Flight(NamedTuple):
 def mean_flight(constants: Mapping[str, Any]) -> Flight:
     """Of a machine's fields, as ``run.json`` has them; KeyError where these were others."""
     nb, levels = prod(constants["shape"]), constants.get("levels")
-    startups_ps = sum(constants[name] for name in STARTUPS)
     if levels:
-        return _of_levels(constants, levels, nb, startups_ps)
+        return _of_levels(constants, levels, nb)
     rates = [constants["link_bytes_per_s"], constants["injection_bytes_per_s"]]
     if constants.get("topology") == FAT_TREE:
         hops = _hops_in_tree(nb, constants["fat_tree"]["arity"])
     else:
         hops = _hops_in_torus(constants["shape"])
     latency_ps = constants["latency_ps"] + round(hops * constants["hop_latency_ps"])
-    return Flight(startups_ps, latency_ps, min(filter(None, rates), default=0))
+    startups_ps = (constants[name] for name in STARTUPS)
+    return Flight(*startups_ps, latency_ps, min(filter(None, rates), default=0))
 
 
 def _of_levels(
-    constants: Mapping[str, Any], levels: Sequence[Mapping[str, Any]], nb: int, startups_ps: int
+    constants: Mapping[str, Any], levels: Sequence[Mapping[str, Any]], nb: int
 ) -> Flight:
     blocks = list(accumulate((level["size"] for level in levels[:-1]), int.__mul__))
     shares = shares_of_pairs(nb, [*blocks, nb])
-    means = {"latency_ps": 0.0, "startups_ps": 0.0, "s_per_byte": 0.0}
+    means = dict.fromkeys((*STARTUPS, "latency_ps", "s_per_byte"), 0.0)
     for share, level in zip(shares, levels, strict=True):
         rate = level["bytes_per_s"]
         means["latency_ps"] += share * level["latency_ps"]
-        means["startups_ps"] += share * sum(level.get(n, constants[n]) for n in STARTUPS)
         means["s_per_byte"] += share / rate if rate else 0.0
+        for name in STARTUPS:
+            means[name] += share * level.get(name, constants[name])
+    startups_ps = (round(means[name]) for name in STARTUPS)
     rate = round(1 / means["s_per_byte"]) if means["s_per_byte"] else 0
-    return Flight(round(means["startups_ps"]), round(means["latency_ps"]), rate)
+    return Flight(*startups_ps, round(means["latency_ps"]), rate)
 
 
 def shares_of_pairs(nb: int, blocks: Sequence[int]) -> list[float]:

@@ -4,7 +4,7 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 
 - *compute*: tests and rays. That is the bound, which no way of sending messages changes.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
-  unpacking included; between levels those of the outermost.
+  unpacking included; with a thread what the PEs pay.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
@@ -31,6 +31,7 @@ from typing import Any
 
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
+from simmpp.machine.service import fixed_costs
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.methods.simulation import integers
 from simmpp.run.flights import mean_flight
@@ -52,8 +53,8 @@ Numbers = Mapping[str, Any]
 class MessageCosts:
     """What limits need of a machine."""
 
-    startups_ps: int
-    """Of both PEs, for any message; the mean of levels'."""
+    startups_ps: tuple[int, ...]
+    """Of both PEs, for each kind of message; the mean of levels'."""
     fixed_ps: tuple[int, ...]
     """Of packing and unpacking, for each kind of part."""
     flight_ps: int
@@ -65,9 +66,8 @@ class MessageCosts:
     def of(cls, constants: Mapping[str, Any]) -> MessageCosts:
         """From a machine's fields, as ``run.json`` has them; KeyError where these were others."""
         flight = mean_flight(constants)
-        copies = zip(constants["pack"], constants["unpack"], strict=True)
-        fixed_ps = tuple(one["fixed_ps"] + other["fixed_ps"] for one, other in copies)
-        return cls(flight.startups_ps, fixed_ps, flight.latency_ps, flight.bytes_per_s)
+        costs = fixed_costs(constants, flight.send_startup_ps, flight.receive_startup_ps)
+        return cls(*costs, flight.latency_ps, flight.bytes_per_s)
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,9 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
         return {COMMUNICATION: total_ps}
     parts = [numbers.get(f"{kind}_parts") or numbers[f"{kind}_messages"] for kind in KINDS]
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
-    startups_ps = min(total_ps, numbers["messages"] * costs.startups_ps + fixed_ps)
+    counts = (numbers[f"{kind}_messages"] for kind in KINDS)
+    each_ps = sum(n * each for n, each in zip(counts, costs.startups_ps, strict=True))
+    startups_ps = min(total_ps, each_ps + fixed_ps)
     return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from simmpp.common.files import write_text
 from simmpp.config.config import Config, described
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import THREAD, Machine
 from simmpp.methods.simulation import integers
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.machines import MACHINE_OF, machines_told
@@ -94,6 +94,7 @@ def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str
     result, base, ceiling = run.result, reference_of(runs).result, ceiling_of(runs)
     parameters = _parameters(run.parameters)
     share = utilisation(run)
+    of_threads = point.machine.service == THREAD
     return {
         "policy": run.parameters.title,
         "parameters": parameters,
@@ -113,6 +114,7 @@ def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str
             "compute_ps": result.compute_ps.tolist(),
             "communication_ps": result.communication_ps.tolist(),
             "waiting_ps": result.waiting_ps.tolist(),
+            **({"service_ps": result.service_ps.tolist()} if of_threads else {}),
         },
     }
 

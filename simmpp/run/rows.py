@@ -66,7 +66,8 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
-    columns = result_columns(uses={use for run in runs for use in run.parameters.uses})
+    uses = {use for run in runs for use in run.parameters.uses} | {*point.machine.uses}
+    columns = result_columns(uses=uses)
     write_csv(in_order(row(point, run) for run in runs), columns, path)
 
 

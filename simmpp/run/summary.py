@@ -25,7 +25,9 @@ def measures(runs: Sequence[PolicyRun]) -> list[tuple[str, list[str]]]:
 def heading(point: Point) -> str:
     """Two lines that say what was simulated."""
     workload, machine, placement = point.workload, point.machine, point.placement
-    network = topology_of(machine)
+    network = str(topology_of(machine))
+    if placement.islands > 1:
+        network += f", {placement.islands} islands of {placement.island}"
     memory = point.config.memory
     room = (
         format_bytes(memory.bytes)

@@ -52,6 +52,8 @@ class Pool:
         self.executor, self.run = executor, run
         self.most_in_flight = most_in_flight
         """Tasks that are given out and not back: enough to keep all busy, no more to be lost."""
+        self.timeout_s: float | None = None
+        """What its tasks are given, where that is known."""
 
     def submit(self, task: Task) -> Future[Outcome]:
         """Give a task out; to a broken executor it is lost like those already in flight."""
@@ -70,14 +72,18 @@ class Pool:
         self.executor.shutdown(wait=False, cancel_futures=True)
 
 
-def pool_for(workers: int, cluster: str | None, run: RunTask) -> Pool:
+def pool_for(
+    workers: int, cluster: str | None, run: RunTask, timeout_s: float | None = None
+) -> Pool:
     """A cluster's workers, or that many processes; one works right here.
 
     Raises ConfigError if there is no such cluster.
     """
     if cluster is not None:
         return DaskCluster(cluster, run)
-    return Pool(SerialExecutor(), 1, run) if workers == 1 else LocalProcesses(workers, run)
+    pool = Pool(SerialExecutor(), 1, run) if workers == 1 else LocalProcesses(workers, run)
+    pool.timeout_s = timeout_s
+    return pool
 
 
 class SerialExecutor(Executor):
@@ -204,8 +210,32 @@ def _let_go(begun: Future[Leashed]) -> None:
         executor.shutdown(wait=False)
 
 
+_is_worker = threading.Event()
+"""This process is one of LocalProcesses, and nobody else's."""
+
+
+@contextmanager
+def ended_after(timeout_s: float | None) -> Iterator[None]:
+    """``with ended_after(60):`` what hears nothing, as a hook that never returns, ends the worker.
+
+    Compiled code can't be broken off, only the process that it runs in, a few seconds later than
+    what hears. Does nothing elsewhere.
+    """
+    if timeout_s is None or not _is_worker.is_set():
+        yield
+        return
+    end = threading.Timer(timeout_s + 1 + min(timeout_s, 4), os._exit, (1,))
+    end.daemon = True
+    end.start()
+    try:
+        yield
+    finally:
+        end.cancel()
+
+
 def _begin(held: Connection, cache: str) -> None:
     """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
+    _is_worker.set()
     warnings.simplefilter("ignore")  # the parent has told them; here they would be told again
     os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
     signal.signal(signal.SIGINT, signal.SIG_IGN)

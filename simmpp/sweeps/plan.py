@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from simmpp.common.errors import ConfigError
@@ -57,10 +58,12 @@ class Plan:
         swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
 
-    @property
+    @cached_property
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
         uses = {use for planned in self.points for use in planned.point.policy.uses}
+        configs = (planned.point.config for planned in self.points)
+        uses |= {use for c in configs for use in c.machine_for(c.processors).uses}
         return result_columns(self.further, uses)
 
     @property

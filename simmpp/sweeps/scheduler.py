@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
@@ -12,6 +13,7 @@ from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
 
 WORKER_DIED = "the worker died (out of memory?)"
+ENDED = "timeout: heard nothing after {:g} s and was ended with its worker (an endless hook?)"
 
 
 def outcomes(waiting: deque[Task], pool: Pool) -> Iterator[Outcome]:
@@ -22,7 +24,7 @@ def outcomes(waiting: deque[Task], pool: Pool) -> Iterator[Outcome]:
     When a worker dies, those in flight are run again one at a time, so that the one at fault is
     found and only that one fails.
     """
-    suspects = deque[Task]()
+    suspects, began_s = deque[Task](), 0.0
     flying: dict[Future[Outcome], Task] = {}
     while waiting or suspects or flying:
         # One dead process breaks an executor of concurrent.futures for all its tasks, and does not
@@ -30,7 +32,7 @@ def outcomes(waiting: deque[Task], pool: Pool) -> Iterator[Outcome]:
         alone = bool(suspects)
         queue, room = (suspects, 1) if alone else (waiting, pool.most_in_flight)
         while queue and len(flying) < room:
-            task = queue.popleft()
+            task, began_s = queue.popleft(), time.monotonic()
             flying[pool.submit(task)] = task
         lost: list[Task] = []
         for future in wait(flying, return_when=FIRST_COMPLETED).done:
@@ -45,9 +47,15 @@ def outcomes(waiting: deque[Task], pool: Pool) -> Iterator[Outcome]:
             flying.clear()
             pool.renew()
             if alone:
-                yield from (Outcome(task.key, error=WORKER_DIED) for task in lost)
+                error = _why(pool.timeout_s, time.monotonic() - began_s)
+                yield from (Outcome(task.key, error=error) for task in lost)
             else:
                 suspects.extend(lost)
+
+
+def _why(timeout_s: float | None, took_s: float) -> str:
+    """What a task died of, all alone: whoever takes longer than it may is ended."""
+    return WORKER_DIED if timeout_s is None or took_s < timeout_s else ENDED.format(timeout_s)
 
 
 def _outcome(future: Future[Outcome], task: Task) -> Outcome | None:

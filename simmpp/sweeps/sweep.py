@@ -153,7 +153,8 @@ def _results(plan: Plan, folder: Path | None) -> Results:
 def _pool(workers: int, cluster: str | None, timeout_s: float | None) -> Pool:
     """Workers elsewhere may have other versions installed than this process: they are told."""
     versions = None if cluster is None else result_versions()
-    return pool_for(workers, cluster, partial(run_task, timeout_s=timeout_s, versions=versions))
+    run = partial(run_task, timeout_s=timeout_s, versions=versions)
+    return pool_for(workers, cluster, run, timeout_s)
 
 
 def _run(

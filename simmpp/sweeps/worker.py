@@ -28,6 +28,7 @@ from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
+from simmpp.sweeps.executors import ended_after
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
 from simmpp.workload.workload import Workload
@@ -84,7 +85,8 @@ def _outcome(task: Task, timeout_s: float | None) -> Outcome:
         place=lambda: watch.count(_placements.get(task.placement_key, lambda: _drawn(task, case))),
         tick=watch.look,
     )
-    numbers = method.numbers(case)
+    with ended_after(timeout_s):
+        numbers = method.numbers(case)
     spent = watch.seconds
     return Outcome(task.key, numbers, _effective_fraction(case, method), spent.wall, spent.cpu)
 

@@ -16,13 +16,13 @@ from fractions import Fraction
 from typing import get_args
 
 import numpy as np
-from simmpp.policy.rules import Packing
 
 import simmpp
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
+from simmpp.policy.policy import Packing
 from simmpp.workload.cache.store import workload_for
 from simmpp.workload.workload import SPHERE, Workload
 

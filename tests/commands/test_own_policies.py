@@ -231,3 +231,45 @@ def test_a_row_of_a_sweep_says_what_went_wrong() -> None:
     done = simmpp("sweep", "c.yaml", "--workers", "1", "--out", "o")
     assert done.exit_code == 1
     assert rows("o")["mine"]["error"].startswith("mine.py:8: send: ZeroDivisionError")
+
+
+FOR_YEARS = """\
+import numba
+from simmpp.policy import Policy
+
+
+@numba.njit
+def nearly_all_turns_that_it_may_take(v):
+    for _ in range(9_999_999):
+        v.memory[0] = (v.memory[0] * 1103515245 + 12345) % 2147483648
+
+
+def ask(v):
+    for _ in range(9_999_999):
+        nearly_all_turns_that_it_may_take(v)
+    return 1
+
+
+POLICY = Policy("years", ask=ask)
+"""
+
+
+def test_a_hook_that_does_not_return_meets_the_timeout() -> None:
+    """What no turn of one loop betrays: the worker is ended, and only its task fails."""
+    Path("mine.py").write_text(FOR_YEARS)
+    Path("c.yaml").write_text(CONFIG.replace(", set: {part: 3}", ""))
+    done = simmpp("sweep", "c.yaml", "--workers", "2", "--timeout", "0.5", "--out", "o")
+    assert done.exit_code == 1, done.output
+    assert rows("o")["mine"]["error"].startswith("timeout: heard nothing after 0.5 s and was ended")
+    assert rows("o")["object"]["error"] == ""
+
+
+SLOW = FOR_YEARS.replace("9_999_999):\n        near", "3):\n        near")
+
+
+def test_slow_hooks_meet_the_timeout_in_this_process_too() -> None:
+    Path("mine.py").write_text(SLOW)
+    Path("c.yaml").write_text(CONFIG.replace(", set: {part: 3}", ""))
+    done = simmpp("sweep", "c.yaml", "--workers", "1", "--timeout", "0.5", "--out", "o")
+    assert done.exit_code == 1, done.output
+    assert rows("o")["mine"]["error"] == "timeout: not finished after 0.5 s"

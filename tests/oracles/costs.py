@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import floor
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
+from simmpp.machine.messages import RAYS, REQUEST, USER
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
@@ -31,6 +32,22 @@ def slowest(machine: Machine) -> int:
 def copy_ps(cost: CopyCost, payload_bytes: int) -> int:
     """Time to pack or unpack one message."""
     return cost.fixed_ps + transfer_ps(payload_bytes, cost.bytes_per_s)
+
+
+def packing(machine: Machine, kind: int, payload_bytes: int) -> int:
+    """Time to pack a part of a message; what is got, and getting it, needs none."""
+    return _copying(machine, machine.pack, kind, payload_bytes)
+
+
+def unpacking(machine: Machine, kind: int, payload_bytes: int) -> int:
+    """Time to unpack a part of a message."""
+    return _copying(machine, machine.unpack, kind, payload_bytes)
+
+
+def _copying(machine: Machine, costs: tuple[CopyCost, ...], kind: int, n_bytes: int) -> int:
+    if machine.service == "nic" and kind not in (RAYS, USER):
+        return 0
+    return copy_ps(costs[REQUEST if kind == USER else kind], n_bytes)
 
 
 def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from oracles.state import PE, Part
+from oracles.state import PE, WHOSE_LOAD, Part
 from oracles.view import Views, numbers, random_draw
 from simmpp.machine.messages import LOAD, RAYS, REQUEST
 from simmpp.policy.policy import Hook
@@ -44,6 +44,12 @@ class Dispatch(Views):
     def packed(self, pe: PE, decided: list[tuple[int, Part]]) -> Iterator[Parcel]:
         """Messages of what has been decided, those that may share one together."""
         shared = {"requests": ((RAYS,), (REQUEST,)), "all": ((RAYS, REQUEST),)}
+        if self.machine.service == "nic":  # a get is a message of its own
+            for kind in (RAYS, REQUEST):
+                for other in self.others(pe):
+                    alone = [part for to, part in decided if to == other and part.kind == kind]
+                    yield from ((other, [part]) for part in alone)
+            return
         for kinds in shared[self.policy.packing]:
             for other in self.others(pe):
                 parts = [part for to, part in decided if to == other and part.kind in kinds]
@@ -51,8 +57,10 @@ class Dispatch(Views):
                     yield other, parts
 
     def others(self, pe: PE) -> list[int]:
-        """All other PEs, beginning with the next one."""
-        return [(pe.number + step) % self.nb for step in range(1, self.nb)]
+        """All other PEs of the island, beginning with the next one."""
+        island = self.island_of(pe.number)
+        at = island.index(pe.number)
+        return island[at + 1 :] + island[:at]
 
     def is_asked(self, waiting: int, count: int | str, nothing_else: bool) -> bool:
         """Do enough rays wait, or is nothing else to do?"""
@@ -82,16 +90,16 @@ class Dispatch(Views):
         """How many rays may be sent to a PE."""
         return sum(map(len, self.sendable(pe, other)))
 
-    def may_go(self, obj: int, other: int) -> bool:
+    def may_go(self, pe: PE, obj: int, other: int) -> bool:
         """May rays that need an object go there?"""
         if self.rules.candidates == "owner":
-            return self.owners[obj] == other
+            return self.owner_of(pe.number, obj) == other
         return obj in self.pes[other].resident
 
     def sendable(self, pe: PE, other: int) -> list[list[int]]:
         """Rays that may be sent to a PE, object by object, in the order of the message."""
         waited_for = {o for _, o, _ in pe.waiting if not pe.in_flight[o]}
-        objects = [o for o in waited_for if self.may_go(o, other)]
+        objects = [o for o in waited_for if self.may_go(pe, o, other)]
         by_age = sorted(objects, key=lambda o: pe.sendable_since[o])
         return [pe.rays_of(o) for o in by_age]
 
@@ -127,11 +135,11 @@ class Dispatch(Views):
             if not self.is_asked(unasked, self.rules.ask_at_least, nothing_else):
                 continue
             answer = ask(self.view_of_object(pe, obj, unasked, nothing_else, draws))
-            chosen = int(answer) - 2
-            has_it = 0 <= chosen < self.nb and obj in self.pes[chosen].resident
+            chosen = dict(enumerate(self.island_of(pe.number), 2)).get(int(answer))
+            if chosen is None or obj not in self.pes[chosen].resident:
+                chosen = self.owner_of(pe.number, obj)
             for _ in range(0 if answer <= 0 else 1 if self.policy.merge_requests else unasked):
-                other = chosen if has_it else self.owners[obj]
-                yield other, Part(REQUEST, self.machine.request_bytes, obj)
+                yield chosen, Part(REQUEST, self.machine.request_bytes, obj)
                 pe.in_flight[obj] += 1
 
     def refresh(self, pe: PE) -> None:
@@ -139,6 +147,9 @@ class Dispatch(Views):
         if self.policy.refresh_ps is None or not knows_loads(self.rules):
             return
         for other in self.others(pe):
-            silence = pe.clock - pe.last_departure[other]
-            if other in pe.peers and silence >= self.policy.refresh_ps:
-                pe.clock = self.send(pe.clock, pe, other, [Part(LOAD, 0)])
+            last, load = pe.last_departure[other], Part(LOAD, 0)
+            if self.machine.service == "nic":
+                last = max(last, pe.heard[other])
+                load = Part(LOAD, self.machine.request_bytes, WHOSE_LOAD)
+            if other in pe.peers and pe.clock - last >= self.policy.refresh_ps:
+                pe.clock = self.send(pe.clock, pe, other, [load])

@@ -15,7 +15,7 @@ class Slice(NamedTuple):
     pe: int
     begin: int
     what: str
-    """"compute", "receive" or "send"."""
+    """"compute", "receive" or "send"; "serve" or "answer" of a thread or network card."""
     end: int
     tests: int = 0
     rays: int = 0
@@ -33,6 +33,19 @@ class Slice(NamedTuple):
     """In the message."""
     requests: int = 0
     """In the message."""
+
+
+Activity = tuple[int, int, str, int, int]
+
+
+def in_order(activities: list[Activity]) -> list[Activity]:
+    """By beginning and PE, those of a thread behind."""
+    return sorted(activities, key=lambda row: (*row[:2], row[2].startswith("serve")))
+
+
+def who(row: Slice) -> tuple[int, bool]:
+    """A PE, or what serves beside it: what one of them did is in the order of time."""
+    return row.pe, row.what in ("serve", "answer")
 
 
 @dataclass
@@ -53,16 +66,18 @@ class Outcome:
     compute_ps: list[int]
     communication_ps: list[int]
     waiting_ps: list[int]
+    service_ps: list[int]
+    """Of threads."""
     peak_rays: int
     peak_bytes: int
     events: int
     rules_never_fired: tuple[str, ...]
     arrivals: list[tuple[int, int, int, int, str, int]]
     """(time, destination, source, send number, message kind, payload bytes)."""
-    activities: list[tuple[int, int, str, int, int]]
-    """(begin, PE, "receive <kind>" or "compute", end, tests)."""
+    activities: list[Activity]
+    """(begin, PE, "receive <kind>", "compute" or "serve <kind>", end, tests)."""
     slices: list[Slice]
-    """Every message unpacked or packed and every computation, those of a PE one after another."""
+    """Every message unpacked or packed and every computation, by ``who``, one after another."""
     tested: list[tuple[int, int]]
     """(ray, object) in the order performed: by the beginnings of the computes."""
     ray_hops: list[int]
@@ -79,7 +94,7 @@ class Ledger:
     received: int = 0
     arrivals: list[tuple[int, int, int, int, str, int]] = field(default_factory=list)
     open: dict[int, tuple[int, str, int]] = field(default_factory=dict)
-    """PE: (begin, kind, tests) of the activity that has not ended."""
+    """PE: (begin, kind, tests) of the activity that has not ended; -1 - PE: of its thread."""
     activities: list[tuple[int, int, str, int, int]] = field(default_factory=list)
     slices: list[Slice] = field(default_factory=list)
     tested: list[tuple[int, int]] = field(default_factory=list)
@@ -109,14 +124,16 @@ class Ledger:
     def end_activity(self, pe: int, end: int) -> None:
         """Write down an activity that is over."""
         begin, kind, n_tests = self.open.pop(pe)
-        self.activities.append((begin, pe, kind, end, n_tests))
+        self.activities.append((begin, max(pe, -1 - pe), kind, end, n_tests))
 
     def did(self, pe: PE, begin: int, what: str, end: int, m: Message | None, **more: int) -> None:
         """Write down what a PE did."""
         state = {"load": pe.load, "ready": len(pe.ready)}
+        if what in ("serve", "answer"):  # the PE may be in an activity
+            state = {"load": -1, "ready": -1}
         if m is not None:
             state |= {"kind": m.kind, "number": m.send_number, "payload_bytes": m.payload_bytes}
-            state |= {"other": m.source if what == "receive" else m.destination}
+            state |= {"other": m.source if what in ("receive", "serve") else m.destination}
             state |= {"rays": m.n_rays}
             state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
@@ -125,9 +142,9 @@ class Ledger:
         """What was done until the end of the run, by PE and time."""
         kept = [s for s in self.slices if s.end <= end or s.begin < end]
         late = [s._replace(end=end) for s in kept]
-        late = [s._replace(number=-1) if s.what == "send" else s for s in late]
+        late = [s._replace(number=-1) if s.what in ("send", "answer") else s for s in late]
         found = [s if s.end <= end else short for s, short in zip(kept, late, strict=True)]
-        return sorted(found, key=lambda s: s.pe)
+        return sorted(found, key=who)
 
     def account(self, name: str, pe: int) -> int:
         """Time of a PE in an account, clipped at the makespan."""
@@ -165,12 +182,13 @@ class Ledger:
             compute_ps=compute,
             communication_ps=communication,
             waiting_ps=[end - a - b for a, b in zip(compute, communication, strict=True)],
+            service_ps=[self.account("service", k) for k in range(processors)],
             peak_rays=max(self.held_rays),
             peak_bytes=max(self.held_bytes),
             events=len(activities) + len(self.arrivals),
             rules_never_fired=tuple(rule for rule in rules if not fired[rule]),
             arrivals=sorted(self.arrivals),
-            activities=sorted(activities, key=lambda row: row[:2]),
+            activities=in_order(activities),
             slices=self.clipped(end),
             tested=self.tested,
             ray_hops=self.ray_hops,

@@ -11,11 +11,11 @@ import heapq
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from oracles.costs import copy_ps, intersection_ps
+from oracles.costs import intersection_ps
 from oracles.ledger import Outcome
-from oracles.network import distance, startups_ps
+from oracles.network import distance
+from oracles.serving import Serving
 from oracles.state import PE, Message, Part
-from oracles.talking import Talking
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
 from simmpp.placement.placement import Placement
@@ -24,7 +24,7 @@ from simmpp.policy.reads import names_in
 from simmpp.workload.workload import Workload
 
 
-class Simulation(Talking):
+class Simulation(Serving):
     """The event loop and the activities of a PE."""
 
     def run(self) -> None:
@@ -36,6 +36,8 @@ class Simulation(Talking):
             "begin": self.begin,
             "dispatch": self.dispatch,
             "take": self.take,
+            "serve": self.serve,
+            "served": self.served,
             "rest": self.rest,
             "wake": self.wake,
         }
@@ -46,15 +48,6 @@ class Simulation(Talking):
             handlers[what](time, whom)
         if self.rays_left:
             raise AssertionError(f"{self.rays_left} rays left and nothing scheduled")
-
-    def arrive(self, time: int, message: Message) -> None:
-        """A message lies in the inbox; a sleeping PE wakes."""
-        self.ledger.arrived(time, message)
-        pe = self.pes[message.destination]
-        pe.inbox.append(message)
-        if pe.asleep:
-            pe.asleep = False
-            self.schedule(time, pe, "begin")
 
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
@@ -77,17 +70,14 @@ class Simulation(Talking):
         self.schedule(work_end, pe, "dispatch")
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
-        """Unpack one message and do what it asks for; returns the end of that."""
-        _, cost = startups_ps(self.machine, message.source, pe.number)
-        unpack = (*self.machine.unpack, self.machine.unpack[REQUEST])
-        cost += sum(copy_ps(unpack[part.kind], part.payload_bytes) for part in message.parts)
-        clock = self.pay("communication", pe, time, cost)
-        self.ledger.received += 1
-        pe.known_load[message.source] = message.load
-        pe.heard[message.source] = clock
-        pe.in_flight_to[message.source] = 0
-        if message.count(OBJECT) or message.count(RAYS):
-            pe.peers.add(message.source)
+        """Unpack one message, or take it over, and do what it asks for; returns the end of that."""
+        if self.machine.service == "thread":
+            clock = self.pay("communication", pe, time, self.machine.handoff_ps)
+        else:
+            clock = self.pay("communication", pe, time, self.unpacking(pe, message))
+            self.ledger.received += 1
+            self.hear_load(clock, pe, message)
+        if message.carries:
             self.get_on(pe)
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
@@ -99,7 +89,7 @@ class Simulation(Talking):
                 self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
         wanted = [part.obj for part in message.parts if part.kind == REQUEST]
-        if wanted:
+        if wanted and self.machine.service == "pe":
             answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
             clock = self.send(clock, pe, message.source, answer)
         if message.count(USER):

@@ -13,6 +13,7 @@ from oracles import blocks, tree
 from oracles.costs import Stage, hops_from, slowest, transfer_ps
 from oracles.state import Message
 from simmpp.machine.machine import Level, Machine
+from simmpp.machine.messages import LOAD, REQUEST
 
 Way = list[tuple[str, ...]]
 
@@ -64,6 +65,18 @@ def startups_ps(machine: Machine, source: int, destination: int) -> tuple[int, i
     if machine.topology == "levels":
         of = blocks.level_between(machine, source, destination)
     return of.send_startup_ps, of.receive_startup_ps
+
+
+def sending(machine: Machine, pe: int, other: int, kind: int) -> int:
+    """What a PE pays for a message besides packing it; the kind is that of its first part."""
+    if machine.service == "nic" and kind in (REQUEST, LOAD):
+        return machine.get_startup_ps
+    return startups_ps(machine, pe, other)[0]
+
+
+def receiving(machine: Machine, pe: int, other: int) -> int:
+    """What a PE, or its thread, pays for a message from another, besides unpacking it."""
+    return machine.completion_ps if machine.service == "nic" else startups_ps(machine, other, pe)[1]
 
 
 def network_ps(machine: Machine, source: int, destination: int, payload_bytes: int) -> int:

@@ -7,6 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from simmpp.machine.messages import OBJECT, RAYS
+
+WHOSE_LOAD = -2
+"""In place of an object: a get of a PE's load."""
+
 
 class Part(NamedTuple):
     """What is packed and unpacked at one go: a batch of rays, a request, an object, or nothing."""
@@ -45,6 +50,16 @@ class Message:
         """In all parts."""
         return sum(len(part.rays) for part in self.parts)
 
+    @property
+    def carries(self) -> bool:
+        """Whether rays or an object are in it."""
+        return bool(self.count(OBJECT) or self.count(RAYS))
+
+    @property
+    def asks_for_load(self) -> bool:
+        """Whether it is a get of a load."""
+        return self.parts[0].obj == WHOSE_LOAD
+
     def count(self, kind: int) -> int:
         """How many parts are of a kind."""
         return sum(part.kind == kind for part in self.parts)
@@ -73,6 +88,12 @@ class PE:
     """Fetched objects kept, the least recently used first."""
     inbox: deque[Message] = field(default_factory=deque)
     asleep: bool = False
+    to_be_served: deque[Message] = field(default_factory=deque)
+    """What its thread has not looked at."""
+    in_hand: Message | None = None
+    """What its thread unpacks."""
+    thread_asleep: bool = True
+    thread_instants: int = 0
     instants: int = 0
     sends: int = 0
     ranks: int = 0

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from oracles.costs import copy_ps
 from oracles.dispatch import Dispatch
-from oracles.network import distance, network_ps
+from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE, Message, Part
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST, USER
@@ -40,7 +40,8 @@ class Talking(Dispatch):
             view = self.view_of_words(pe, None, self.rules.idle)
             pe.wish = int(self.rules.idle(view))  # type: ignore[arg-type]
             sent = len(self.ledger.sent)
-            clock = time if view.other == -1 else self.say(time, pe, view.other, view.words)
+            other = dict(enumerate(self.island_of(pe.number))).get(view.other, pe.number)
+            clock = time if view.other == -1 else self.say(time, pe, other, view.words)
             if len(self.ledger.sent) > sent:
                 self.schedule(clock, pe, "rest")
                 return
@@ -86,7 +87,7 @@ class Talking(Dispatch):
 
     def most(self) -> int:
         """Messages that a PE may say, and times that it is woken, until it gets on."""
-        return 2 * (self.nb - 1)
+        return 2 * (len(self.islands[0]) - 1)
 
     def say(self, clock: int, pe: PE, other: int, words: list[int]) -> int:
         """Send words, if there are not too many already and there is such a PE."""
@@ -99,13 +100,22 @@ class Talking(Dispatch):
     def view_of_words(self, pe: PE, other: int | None, hook: Hook) -> SimpleNamespace:
         """What a hook is shown of who has sent a message, or of nobody."""
         machine, draws = self.machine, "random" in names_in(hook)
-        view = self.view(pe, (pe.number + 1) % self.nb if other is None else other, False, draws)
+        view = self.view(pe, pe.number if other is None else other, False, draws)
         view.waiting, view.unasked = len(pe.waiting), 0
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         view.objects = view.fetch_ps = view.fetch_flight_ps = 0
-        view.send_ps = machine.send_startup_ps + copy_ps(machine.pack[REQUEST], USER_BYTES)
-        view.receive_ps = machine.receive_startup_ps + copy_ps(machine.unpack[REQUEST], USER_BYTES)
+        if other is None:
+            send_ps = machine.send_startup_ps
+            nic = machine.service == "nic"
+            receipt_ps = machine.completion_ps if nic else machine.receive_startup_ps
+        else:
+            send_ps = sending(machine, pe.number, other, USER)
+            receipt_ps = receiving(machine, pe.number, other)
+        view.send_ps = send_ps + copy_ps(machine.pack[REQUEST], USER_BYTES)
+        receipt_ps += copy_ps(machine.unpack[REQUEST], USER_BYTES)
+        threads = machine.service == "thread"
+        view.receive_ps = machine.handoff_ps if threads else receipt_ps
         if other is None:
             view.other = view.known_load = -1
             view.age_ps, view.in_flight, view.hops, view.flight_ps = pe.clock, 0, 0, 0
@@ -113,4 +123,5 @@ class Talking(Dispatch):
         else:
             view.hops = distance(machine, pe.number, other)
             view.flight_ps = network_ps(machine, pe.number, other, USER_BYTES)
+            view.flight_ps += receipt_ps if threads else 0
         return view

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from oracles.costs import copy_ps, intersection_ps
-from oracles.network import distance, network_ps, startups_ps
+from oracles.costs import intersection_ps, packing, unpacking
+from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE
 from oracles.world import World
 from simmpp.common.randomness import key
@@ -41,16 +41,17 @@ class Views(World):
         """What any hook of this PE sees when it decides about another."""
         known, age = self.known_load(pe.clock, pe, other)
         own = dict(zip(self.rules.parameters, self.policy.numbers, strict=True))
+        island = self.island_of(pe.number)
         return SimpleNamespace(
             now_ps=pe.clock,
-            me=pe.number,
-            nb=self.nb,
+            me=island.index(pe.number),
+            nb=len(island),
             load=pe.load,
             ready=len(pe.ready),
             held_bytes=self.held_bytes(pe),
             nothing_else=int(nothing_else),
             initial_load=self.workload.n_primaries // self.nb,
-            other=other,
+            other=island.index(other),
             known_load=known,
             age_ps=age,
             in_flight=pe.in_flight_to[other] if self.policy.load_info == "piggyback" else 0,
@@ -59,7 +60,7 @@ class Views(World):
             memory=pe.memory,
             random=random_draw(self.seed, pe) if draws else None,
             finished=pe.finished,
-            busy_ps=sum(pe.worked.values()),
+            busy_ps=pe.worked["compute"] + pe.worked["communication"],
             compute_ps=pe.worked["compute"],
             fetched=pe.fetched,
             released=pe.released,
@@ -77,21 +78,21 @@ class Views(World):
         view.object = view.owner = -1
         view.object_bytes = view.test_ps = view.holders = view.requests = 0
         n_bytes, machine = waiting * self.machine.ray_bytes, self.machine
-        sending, receipt = startups_ps(machine, pe.number, other)
-        view.send_ps = sending + copy_ps(machine.pack[RAYS], n_bytes)
-        view.receive_ps = receipt + copy_ps(machine.unpack[RAYS], n_bytes)
-        view.flight_ps = network_ps(machine, pe.number, other, n_bytes)
+        here = pe.number
+        view.send_ps = sending(machine, here, other, RAYS) + packing(machine, RAYS, n_bytes)
+        view.receive_ps, by_thread_ps = self.taken_in(other, here, RAYS, n_bytes)
+        view.flight_ps = network_ps(machine, here, other, n_bytes) + by_thread_ps
         return view  # type: ignore[return-value]
 
     def view_of_object(
         self, pe: PE, obj: int, unasked: int, nothing_else: bool, draws: bool
     ) -> View:
         """What ask is shown."""
-        owner = self.owners[obj]
+        owner = self.owner_of(pe.number, obj)
         view = self.view(pe, owner, nothing_else, draws)
-        view.object, view.owner, view.object_bytes = obj, owner, self.object_bytes[obj]
+        view.object, view.owner, view.object_bytes = obj, view.other, self.object_bytes[obj]
         view.test_ps = intersection_ps(self.machine, self.workload, obj)
-        view.holders = sum(obj in each.resident for each in self.pes)
+        view.holders = sum(obj in self.pes[k].resident for k in self.island_of(pe.number))
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]
         view.send_ps, view.receive_ps, view.flight_ps = self.fetch_ps(pe, obj)
@@ -107,20 +108,24 @@ class Views(World):
 
     def fetch_ps(self, pe: PE, obj: int) -> tuple[int, int, int]:
         """Of a request, of the object, and of all that is in between."""
-        owner, machine = self.owners[obj], self.machine
+        here, owner, machine = pe.number, self.owner_of(pe.number, obj), self.machine
         asked, fetched = machine.request_bytes, self.object_bytes[obj]
-        sending, receipt = startups_ps(machine, pe.number, owner)
-        ask_ps = sending + copy_ps(machine.pack[REQUEST], asked)
-        receive_ps = receipt + copy_ps(machine.unpack[OBJECT], fetched)
-        between_ps = (
-            network_ps(machine, pe.number, owner, asked)
-            + receipt
-            + copy_ps(machine.unpack[REQUEST], asked)
-            + sending
-            + copy_ps(machine.pack[OBJECT], fetched)
-            + network_ps(machine, owner, pe.number, fetched)
-        )
-        return ask_ps, receive_ps, between_ps
+        ask_ps = sending(machine, here, owner, REQUEST) + packing(machine, REQUEST, asked)
+        between_ps = network_ps(machine, here, owner, asked)
+        between_ps += network_ps(machine, owner, here, fetched)
+        if machine.service != "nic":
+            between_ps += receiving(machine, owner, here)
+            between_ps += unpacking(machine, REQUEST, asked)
+            between_ps += sending(machine, owner, here, OBJECT) + packing(machine, OBJECT, fetched)
+        receive_ps, by_thread_ps = self.taken_in(here, owner, OBJECT, fetched)
+        return ask_ps, receive_ps, between_ps + by_thread_ps
+
+    def taken_in(self, pe: int, other: int, kind: int, n_bytes: int) -> tuple[int, int]:
+        """What receipt costs a PE, and what its thread does for it before."""
+        receipt = receiving(self.machine, pe, other) + unpacking(self.machine, kind, n_bytes)
+        if self.machine.service == "thread":
+            return self.machine.handoff_ps, receipt
+        return receipt, 0
 
     def known_load(self, clock: int, pe: PE, other: int) -> tuple[int, int]:
         """What a PE knows of another's load, and for how long it has."""

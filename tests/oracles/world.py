@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from oracles.costs import Stage, copy_ps
+from oracles.costs import Stage, packing, unpacking
 from oracles.ledger import Ledger
-from oracles.network import Network, network_ps, startups_ps
+from oracles.network import Network, network_ps, receiving, sending
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Policy
@@ -41,6 +40,9 @@ class World:
     def __post_init__(self) -> None:
         self.nb = self.placement.processors
         self.network = Network(self.machine)
+        pes, n_islands = list(range(self.nb)), self.placement.islands
+        cuts = [n * self.nb // n_islands for n in range(n_islands + 1)]
+        self.islands = [pes[i:j] for i, j in pairwise(cuts)]
         self.owners = [int(o) for o in self.placement.owners]
         self.object_bytes = [int(b) for b in self.workload.object_bytes]
         self.rays_left = self.workload.n_rays
@@ -58,7 +60,7 @@ class World:
 
     def new_pe(self, k: int) -> PE:
         """A PE before the start, its primary rays ready."""
-        resident = {o for o, owner in enumerate(self.owners) if owner == k}
+        resident = {o for o in range(len(self.owners)) if self.owner_of(k, o) == k}
         first, end = (int(i) for i in self.placement.replica_offsets[k : k + 2])
         resident |= {int(o) for o in self.placement.replica_objects[first:end]}
         if self.rules.all_resident:
@@ -67,10 +69,24 @@ class World:
         share = self.workload.n_primaries // self.nb
         return PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
 
+    def island_of(self, k: int) -> list[int]:
+        """The PEs of a PE's island."""
+        return next(island for island in self.islands if k in island)
+
+    def owner_of(self, k: int, obj: int) -> int:
+        """The PE that owns an object in the island of another."""
+        return self.island_of(k)[self.owners[obj]]
+
     def schedule(self, time: int, pe: PE, what: str) -> None:
         """Let a PE begin or dispatch at a time."""
         heapq.heappush(self.queue, ((time, 1, pe.number, pe.instants, 0), what, pe))
         pe.instants += 1
+
+    def schedule_thread(self, time: int, pe: PE, what: str) -> None:
+        """Let the thread of a PE serve, or have served, at a time."""
+        key = (time, 1, self.nb + pe.number, pe.thread_instants, 0)
+        heapq.heappush(self.queue, (key, what, pe))
+        pe.thread_instants += 1
 
     def sample_loads(self, time: int) -> None:
         """If a multiple of the period has passed since all loads were sampled, sample them."""
@@ -84,26 +100,46 @@ class World:
         pe.paid[account] += cost
         return self.ledger.pay(account, pe.number, clock, cost)
 
-    def send(self, clock: int, pe: PE, destination: int, parts: Sequence[Part]) -> int:
+    def send(
+        self,
+        clock: int,
+        pe: PE,
+        destination: int,
+        parts: Sequence[Part],
+        *,
+        by_thread: bool = False,
+    ) -> int:
         """Pack a message and let it depart; returns the time of that."""
         begin = clock
-        cost, _ = startups_ps(self.machine, pe.number, destination)
-        pack = (*self.machine.pack, self.machine.pack[REQUEST])
-        cost += sum(copy_ps(pack[part.kind], part.payload_bytes) for part in parts)
-        clock = self.pay("communication", pe, clock, cost)
-        message = Message(pe.number, destination, pe.sends, tuple(parts), pe.load, clock)
+        cost = sending(self.machine, pe.number, destination, parts[0].kind)
+        cost += sum(packing(self.machine, part.kind, part.payload_bytes) for part in parts)
+        clock = self.pay("service" if by_thread else "communication", pe, clock, cost)
+        load = pe.ended_load if by_thread else pe.load
+        message = Message(pe.number, destination, pe.sends, tuple(parts), load, clock)
         pe.sends += 1
-        pe.last_departure[destination] = clock
-        if message.count(OBJECT) or message.count(RAYS):
+        if self.machine.service != "nic" or message.asks_for_load:
+            pe.last_departure[destination] = max(pe.last_departure[destination], clock)
+        if message.carries:
             pe.peers.add(destination)
         self.ledger.sent.append(message)
-        self.ledger.did(pe, begin, "send", clock, message)
-        if self.machine.contention == "links":
-            self.come_to(clock, message, self.network.way(message))
-        else:
-            flight = network_ps(self.machine, pe.number, destination, message.payload_bytes)
-            self.let_arrive(clock + flight, message)
+        self.ledger.did(pe, begin, "answer" if by_thread else "send", clock, message)
+        self.depart(clock, message)
         return clock
+
+    def depart(self, time: int, message: Message) -> None:
+        """A message sets off."""
+        if self.machine.contention == "links":
+            self.come_to(time, message, self.network.way(message))
+        else:
+            between = message.source, message.destination
+            flight = network_ps(self.machine, *between, message.payload_bytes)
+            self.let_arrive(time + flight, message)
+
+    def unpacking(self, pe: PE, message: Message) -> int:
+        """What a message costs who receives it."""
+        cost = receiving(self.machine, pe.number, message.source)
+        parts = message.parts
+        return cost + sum(unpacking(self.machine, p.kind, p.payload_bytes) for p in parts)
 
     def come_to(self, time: int, message: Message, way: list[Stage]) -> None:
         """The head of a message will be at the first of these ports and links."""

@@ -35,7 +35,8 @@ def result(nb: int, policy: str = "ray") -> simmpp.Result:
         policy=policy, engine="compiled", makespan_ps=2 * nb, messages_by_kind=(1, 20, 300, 4000),
         parts_by_kind=(1, 20, 300, 4000), messages_received=4321, bytes_sent=64_000, rays=7,
         tests=12_345, rays_sent=6, compute_ps=compute_ps, communication_ps=ones,
-        waiting_ps=2 * nb - compute_ps - ones, pe_peak_rays=compute_ps, pe_peak_bytes=compute_ps,
+        waiting_ps=2 * nb - compute_ps - ones, service_ps=0 * ones,
+        pe_peak_rays=compute_ps, pe_peak_bytes=compute_ps,
         pe_peak_object_bytes=compute_ps, events=9,
     )  # fmt: skip
 

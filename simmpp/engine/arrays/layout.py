@@ -93,7 +93,7 @@ ARRAYS = {
     "child_offsets": Array(I4),  # (n + 1,)
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
-    "owners": Array(I4),  # (N,)
+    "owners": Array(I4),  # (N,), in each island, counted from its first PE
     # PEs that hold each object for good (CSR); empty where the policy does not want to know.
     "holder_offsets": Array(I8),
     "holder_pes": Array(I4),
@@ -144,8 +144,8 @@ ARRAYS = {
     # First parts, plus 1, of the messages that a dispatch is making up: of rays and what goes with
     # them by distance in the ring, of requests alone nb further on.
     "made_up": Array(I4, lambda n: 2 * n.nb),
-    "sort_keys": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
-    "sort_items": Array(I8, lambda n: max(n.objects, 2 * n.nb)),
+    "sort_keys": Array(I8, lambda n: max(n.objects, n.sent)),
+    "sort_items": Array(I8, lambda n: max(n.objects, n.sent)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
@@ -159,7 +159,7 @@ ARRAYS = {
     "slices": Array(SLICE, lambda n: n.counted),
     # of the compiled event loop
     "heap": Array(EVENT_KEY, lambda n: 0),  # grows
-    "processes": Array(PROCESS, lambda n: n.nb),
+    "processes": Array(PROCESS, lambda n: 2 * n.nb),  # PEs, then their threads
 }
 """Every array of a run, declared nowhere else."""
 
@@ -179,8 +179,10 @@ MACHINE = tuple(name for name, kind in get_type_hints(Machine).items() if kind i
 PARAMETERS = (
     *MACHINE,
     "processors",
+    "island",  # PEs of an island
     "n_objects",
     "contends",  # links and ports serve one message at a time
+    "service",  # who answers requests: BY_PE, BY_THREAD or BY_NIC
     "depth_first",
     "keeps",  # fetched objects, in transient memory
     "transient",  # objects that it holds, 0: as many as fit
@@ -239,6 +241,7 @@ REPORT = (
     "phase",  # of the PE's next instant
     "consumed",  # 1: the message of the inbox was received
     "n_sent",  # messages in the outbox
+    "handed",  # the message that a thread has handed over to its PE; NONE: none
 )
 """What the last step of a PE wants its engine to know."""
 

@@ -14,11 +14,15 @@ Row = Any
 """A record of one of the arrays."""
 
 NONE = -1
+ITS_LOAD = -2
+"""In place of an object: the get of a PE's load."""
 
 PE = np.dtype(
     [
         ("first", "i4"),  # list of started ready rays, linked through RAY.next; NONE: empty
         ("last", "i4"),
+        ("base", "i4"),  # the first PE of its island
+        ("place", "i4"),  # its number in the island: base + place is the PE
         ("n_ready", "i8"),  # those and its pixels that are not started
         ("load", "i8"),  # rays held: ready + waiting
         ("settled_load", "i8"),  # load at the end of the last ended activity
@@ -39,6 +43,9 @@ PE = np.dtype(
         ("pixel_end", "i4"),  # and end
         ("cut", "i4"),  # 1: the first ready ray was cut by the quantum
         ("draws", "i8"),  # random numbers that its policy was given
+        ("service_ps", "i8"),  # of its thread, which is busy until then:
+        ("served_until_ps", "i8"),
+        ("in_hand", "i4"),  # the message that its thread unpacks; NONE: none
         ("finished", "i8"),  # rays that ended here
         ("fetched", "i8"),  # objects that have come on request
         ("released", "i8"),  # rays that these made ready
@@ -105,7 +112,7 @@ MESSAGE = np.dtype(
         ("next", "i4"),  # in the inbox
         ("part", "i4"),  # the message's next part, which is a row of its own; NONE: the last
         ("last_part", "i4"),  # of a message, in the row of its first part
-        ("obj", "i4"),
+        ("obj", "i4"),  # NONE: none; ITS_LOAD: a load is got
         ("first", "i4"),  # rays
         ("last", "i4"),
         ("n", "i4"),
@@ -130,7 +137,7 @@ EVENT = np.dtype(
         ("requests", "i4"),  # in the message
         ("load", "i4"),  # of the PE, when it is done
         ("ready", "i4"),  # rays of the load that are ready then; the others wait
-        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE or SEND
+        ("event", "i2"),  # ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE or ANSWER
         ("kind", "i2"),  # of the message; NONE without one
     ]
 )
@@ -154,7 +161,7 @@ PROCESS = np.dtype(
         ("asleep", "i4"),
     ]
 )
-"""A PE as the compiled event loop sees it."""
+"""A PE, or its thread, as the compiled event loop sees it."""
 
 BINS = 1024
 """Bins of time; a run fills more than half of them."""
@@ -200,5 +207,7 @@ said has been sent, and the PE sleeps if no message has come; the time that ``id
 unless a message was before it."""
 SLEEP = -1
 """In place of the time of a PE's next instant: none, until a message arrives."""
-ARRIVAL, RECEIVE, COMPUTE, SEND = range(4)
+ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE, ANSWER = range(6)
+BY_PE, BY_THREAD, BY_NIC = range(3)
+SERVICE = {"pe": BY_PE, "thread": BY_THREAD, "nic": BY_NIC}
 PACK, UNPACK = 0, len(MESSAGE_KINDS)

@@ -11,13 +11,13 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import Lists, append, unlink
 from simmpp.engine.arrays.records import Run
 from simmpp.engine.arrays.views import (
-    holder_offsets,
     holder_pes,
     miss_rows,
     peer_rows,
     sendable,
     unsent,
 )
+from simmpp.engine.pe.islands import holders_of
 from simmpp.engine.pe.peers import peer_of
 
 
@@ -49,8 +49,8 @@ def count_sendable(s: Run, me: int, miss_row: int, n_more: int) -> None:
     if not s.to_holders:
         _count(s, me, miss.peer, n_more)
         return
-    obj = miss.key % s.n_objects
-    for at in range(holder_offsets(s)[obj], holder_offsets(s)[obj + 1]):
+    first, end = holders_of(s, me, miss.key % s.n_objects)
+    for at in range(first, end):
         _count(s, me, peer_of(s, me, holder_pes(s)[at]), n_more)
 
 

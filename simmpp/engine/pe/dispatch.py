@@ -28,7 +28,6 @@ from simmpp.engine.arrays.records import NONE, SINGLY, TWO, Row, Run
 from simmpp.engine.arrays.views import (
     exchanged,
     miss_rows,
-    owners,
     peer_rows,
     pes,
     rays,
@@ -39,8 +38,9 @@ from simmpp.engine.arrays.views import (
     unsent,
 )
 from simmpp.engine.pe.candidates import withdraw
+from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import drop_if_idle, is_holder, set_unasked
-from simmpp.engine.pe.peers import known_load
+from simmpp.engine.pe.peers import known_load, silence_ps
 from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
 from simmpp.engine.record.counters import note_work
@@ -193,10 +193,11 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
 
 @kernel
 def _who_has(s: Run, me: int, obj: int, chosen: int) -> int:
-    """The PE that the policy has chosen, if it has the object for good; else the owner."""
-    if 0 <= chosen < s.processors and is_holder(s, chosen, obj):
-        return chosen
-    return owners(s)[obj]
+    """The PE of its island that the policy has chosen, if it has the object; else the owner."""
+    other = pes(s)[me].base + chosen
+    if 0 <= chosen < s.island and is_holder(s, other, obj):
+        return other
+    return owner_of(s, me, obj)
 
 
 @kernel
@@ -218,11 +219,14 @@ def _collect_misses(s: Run, me: int, nothing_else: int) -> int:
 def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
     """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
 
+    With nic: get the load of those of which nothing was heard for long.
+
     Not after the receipt of such a message, or loads would answer loads for ever.
     """
     clock_ps = now_ps
     for i in range(_collect_peers(s, me, exchanged(s), me, 0)):
-        peer = peer_rows(s)[sort_items(s)[i]]
-        if clock_ps - peer.sent_ps >= s.refresh_ps:
-            clock_ps = send_load(s, me, peer.key % s.processors, clock_ps)
+        peer_row = sort_items(s)[i]
+        if silence_ps(s, peer_row, clock_ps) >= s.refresh_ps:
+            other = peer_rows(s)[peer_row].key % s.processors
+            clock_ps = send_load(s, me, other, clock_ps)
     return clock_ps

@@ -12,7 +12,6 @@ from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
     miss_rows,
     misses,
-    owners,
     pes,
     rays,
     replica_objects,
@@ -21,6 +20,7 @@ from simmpp.engine.arrays.views import (
     unasked,
 )
 from simmpp.engine.pe.candidates import relist, set_sendable
+from simmpp.engine.pe.islands import owner_of, owns
 from simmpp.engine.pe.peers import peer_of
 from simmpp.policy.view import LOADS
 
@@ -28,7 +28,7 @@ from simmpp.policy.view import LOADS
 @kernel
 def is_in_memory(s: Run, me: int, obj: int) -> bool:
     """Is the object resident, or in transient memory?"""
-    if owners(s)[obj] == me or s.all_resident:
+    if owns(s, me, obj) or s.all_resident:
         return True
     if _is_replica(s, me, obj):
         return True
@@ -41,7 +41,7 @@ def is_in_memory(s: Run, me: int, obj: int) -> bool:
 @kernel
 def is_holder(s: Run, pe: int, obj: int) -> bool:
     """Does a PE have the object for good, as its owner or as a replica?"""
-    return owners(s)[obj] == pe or _is_replica(s, pe, obj)
+    return owns(s, pe, obj) or _is_replica(s, pe, obj)
 
 
 @kernel
@@ -95,7 +95,7 @@ def _miss_of(s: Run, me: int, obj: int) -> int:
         miss.pinned = 0
         miss.transient = 0
         if s.sends or (s.ask_reads | s.keep_reads) & LOADS:
-            miss.peer = peer_of(s, me, owners(s)[obj])
+            miss.peer = peer_of(s, me, owner_of(s, me, obj))
     return miss_row
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import add, append, find
-from simmpp.engine.arrays.records import EXACT, NO_INFO, NONE, SAMPLED, TWO, Run
+from simmpp.engine.arrays.records import BY_NIC, EXACT, NO_INFO, NONE, SAMPLED, TWO, Row, Run
 from simmpp.engine.arrays.views import exchanged, peer_rows, peers, pes
+from simmpp.machine.messages import LOAD, OBJECT, RAYS
 
 
 @kernel
@@ -58,3 +59,38 @@ def note_exchange(s: Run, me: int, peer_row: int) -> None:
     if peer_rows(s)[peer_row].exchanged == 0:
         peer_rows(s)[peer_row].exchanged = 1
         append(exchanged(s), me, peer_row)
+
+
+@kernel
+def hear_load(s: Run, me: int, m: Row, now_ps: int) -> None:
+    """Remember the load in a header, and whom rays or objects came from."""
+    if s.listens:
+        peer_row = peer_of(s, me, m.source)
+        # What was got without its owner does not tell the load.
+        if s.service != BY_NIC or m.kind != OBJECT:
+            peer_rows(s)[peer_row].load = m.load
+            peer_rows(s)[peer_row].heard_ps = now_ps
+            peer_rows(s)[peer_row].in_flight = 0
+        if s.refresh_ps != NONE and m.kind in (OBJECT, RAYS):
+            note_exchange(s, me, peer_row)
+
+
+@kernel
+def note_departure_to(s: Run, me: int, m: Row) -> None:
+    """A message departs to another PE, which hears the load or, with nic, tells its own."""
+    peer_row = peer_of(s, me, m.destination)
+    peer = peer_rows(s)[peer_row]
+    if s.service != BY_NIC or m.kind == LOAD:
+        # What a thread sends may depart before what its PE has decided on already.
+        peer.sent_ps = max(peer.sent_ps, m.depart_ps)
+    if m.kind in (OBJECT, RAYS):
+        note_exchange(s, me, peer_row)
+
+
+@kernel
+def silence_ps(s: Run, peer_row: int, now_ps: int) -> int:
+    """For how long another PE has not been told the load; with nic: for how long that has not told
+    its own, nor been asked for it."""
+    peer = peer_rows(s)[peer_row]
+    since_ps = max(peer.sent_ps, peer.heard_ps) if s.service == BY_NIC else peer.sent_ps
+    return now_ps - since_ps

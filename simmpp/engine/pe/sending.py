@@ -10,7 +10,16 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import give_back, sort_by_key, take
-from simmpp.engine.arrays.records import NONE, PACK, REQUESTS_TOGETHER, SINGLY, Row, Run
+from simmpp.engine.arrays.records import (
+    BY_NIC,
+    ITS_LOAD,
+    NONE,
+    PACK,
+    REQUESTS_TOGETHER,
+    SINGLY,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import (
     copy_costs,
     made_up,
@@ -19,7 +28,6 @@ from simmpp.engine.arrays.views import (
     object_bytes,
     outbox,
     parts_by_kind,
-    peer_rows,
     pes,
     sent_by_kind,
     sort_items,
@@ -28,7 +36,7 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.network import depart
 from simmpp.engine.pe.costs import copy_ps, sending_ps
-from simmpp.engine.pe.peers import note_exchange, peer_of
+from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
@@ -65,8 +73,14 @@ def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps
 
 @kernel
 def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
-    """Tell another PE the load, which is in every header: there is nothing else in this message."""
-    return _send(s, me, _new_part(s, LOAD, other, 0), now_ps)
+    """Tell another PE the load, which is in every header: there is nothing else in this message.
+
+    With nic get the other's load.
+    """
+    row = _new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
+    if s.service == BY_NIC:
+        messages(s)[row].obj = ITS_LOAD
+    return _send(s, me, row, now_ps)
 
 
 @kernel
@@ -80,7 +94,14 @@ def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
 
 @kernel
 def answer(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Send what a message asks for, all in one message, to who sent it."""
+    """Send what a message asks for; returns the moment when that has been packed."""
+    row = answer_to(s, message)
+    return _send(s, me, row, now_ps) if row != NONE else now_ps
+
+
+@kernel
+def answer_to(s: Run, message: int) -> int:
+    """Make up what a message asks for, all in one message, to who sent it; NONE: nothing."""
     answering, part = NONE, message
     while part != NONE:
         m = messages(s)[part]
@@ -92,7 +113,7 @@ def answer(s: Run, me: int, message: int, now_ps: int) -> int:
             else:
                 _append(s, answering, row)
         part = m.part
-    return _send(s, me, answering, now_ps) if answering != NONE else now_ps
+    return answering
 
 
 @kernel
@@ -134,8 +155,12 @@ def _post(s: Run, me: int, row: int, now_ps: int) -> int:
     """Send what a dispatch has decided on, or put it to what else goes to that PE."""
     if s.packing == SINGLY:
         return _send(s, me, row, now_ps)
-    place = _place(s, me, messages(s)[row])
-    if made_up(s)[place] > 0:
+    m = messages(s)[row]
+    place = _place(s, me, m)
+    if _is_get(s, m):
+        outbox(s)[s.n_sent] = row
+        s.n_sent += 1
+    elif made_up(s)[place] > 0:
         _append(s, made_up(s)[place] - 1, row)
     else:
         made_up(s)[place] = row + 1
@@ -145,10 +170,15 @@ def _post(s: Run, me: int, row: int, now_ps: int) -> int:
 
 
 @kernel
+def _is_get(s: Run, m: Row) -> bool:
+    return s.service == BY_NIC and m.kind == REQUEST
+
+
+@kernel
 def _place(s: Run, me: int, m: Row) -> int:
     """Where ``made_up`` has the message that a part goes into; messages depart in this order."""
     distance = (m.destination - me) % s.processors
-    alone = s.packing == REQUESTS_TOGETHER and m.kind == REQUEST
+    alone = m.kind == REQUEST and (s.packing == REQUESTS_TOGETHER or s.service == BY_NIC)
     return distance + s.processors if alone else distance
 
 
@@ -160,7 +190,8 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
         row = outbox(s)[i]
         place = _place(s, me, messages(s)[row])
         made_up(s)[place] = 0
-        sort_keys(s)[i], sort_items(s)[i] = place, row
+        # Gets of objects of one PE have one place: those that were decided on first come first.
+        sort_keys(s)[i], sort_items(s)[i] = (place << 32) + i, row
     sort_by_key(sort_keys(s), sort_items(s), n)
     s.n_sent = 0
     clock_ps = now_ps
@@ -172,27 +203,42 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
 @kernel
 def _send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
-    pe, m = pes(s)[me], messages(s)[row]
-    m.source, m.load, m.number = me, pe.load, pe.messages_sent
-    m.depart_ps = now_ps + sending_ps(s, me, m.destination, m.kind) + parts_ps(s, row, PACK)
-    depart(s, m)
-    pe.messages_sent += 1
-    sent_by_kind(s)[m.kind] += 1
-    s.bytes_sent += m.payload_bytes + s.header_bytes
-    if s.packing != SINGLY:
-        _count_parts(s, row)
-    if s.refresh_ps != NONE:
-        peer_row = peer_of(s, me, m.destination)
-        peer_rows(s)[peer_row].sent_ps = m.depart_ps
-        if m.kind in (OBJECT, RAYS):
-            note_exchange(s, me, peer_row)
+    m = messages(s)[row]
+    m.load = pes(s)[me].load
+    sent_ps = pack(s, me, row, now_ps)
     if s.logs:
         note_send(s, me, row, now_ps)
     if s.record_counters:
         note_departure(s, m)
+    return sent_ps
+
+
+@kernel
+def pack(s: Run, me: int, row: int, now_ps: int) -> int:
+    """Pack a message of a PE, or of its thread, that has the load in it already."""
+    m = messages(s)[row]
+    m.source = me
+    startup_ps = sending_ps(s, me, m.destination, m.kind)
+    m.depart_ps = now_ps + startup_ps + parts_ps(s, row, PACK)
+    set_off(s, m)
+    if s.packing != SINGLY:
+        _count_parts(s, row)
+    if s.refresh_ps != NONE:
+        note_departure_to(s, me, m)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return m.depart_ps
+
+
+@kernel
+def set_off(s: Run, m: Row) -> None:
+    """A message departs: it is numbered and counted."""
+    pe = pes(s)[m.source]
+    m.number = pe.messages_sent
+    depart(s, m)
+    pe.messages_sent += 1
+    sent_by_kind(s)[m.kind] += 1
+    s.bytes_sent += m.payload_bytes + s.header_bytes
 
 
 @kernel

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.records import NONE, PACK, UNPACK, Run
+from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import (
-    copy_costs,
-    holder_offsets,
     miss_rows,
     object_bytes,
-    owners,
     peer_rows,
     pes,
     policy_views,
@@ -18,7 +15,8 @@ from simmpp.engine.arrays.views import (
     topology,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.costs import sent_alone_ps, taken_in_ps
+from simmpp.engine.pe.islands import holders_of, owner_of
 from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
 from simmpp.machine.messages import RAYS
@@ -37,7 +35,7 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     """Show ``send`` a PE that waiting rays may go to."""
     peer = peer_rows(s)[peer_row]
     other, waiting = peer.key % s.processors, peer.sendable
-    view.load, view.other = pes(s)[me].load, other
+    view.load, view.other = pes(s)[me].load, other - pes(s)[me].base
     view.waiting, view.unasked = waiting, 0
     if s.send_reads & LOADS:
         show_load(s, view, peer_row, now_ps)
@@ -48,11 +46,9 @@ def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) ->
     if s.send_reads & WAY:
         n_bytes = waiting * s.ray_bytes
         view.hops = hops(topology(s), me, other)
-        pack_ps = copy_ps(copy_costs(s)[PACK + RAYS], n_bytes)
-        unpack_ps = copy_ps(copy_costs(s)[UNPACK + RAYS], n_bytes)
-        view.send_ps = sending_ps(s, me, other, RAYS) + pack_ps
-        view.receive_ps = receiving_ps(s, other, me, RAYS) + unpack_ps
-        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+        view.send_ps = sent_alone_ps(s, me, other, RAYS, n_bytes)
+        view.receive_ps, by_thread_ps = taken_in_ps(s, other, me, RAYS, n_bytes)
+        view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes) + by_thread_ps
     if s.send_reads & WANTED:
         show_wanted(s, view, me, peer_row)
     show_self(s, view, me, now_ps, s.send_reads)
@@ -70,17 +66,18 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
     """Show ``ask`` an object that rays wait for, ``keep`` one that they have used."""
     miss = miss_rows(s)[miss_row]
     obj = miss.key % s.n_objects
-    other = owners(s)[obj]
-    view.load, view.other = pes(s)[me].load, other
+    other = owner_of(s, me, obj)
+    view.load, view.other = pes(s)[me].load, other - pes(s)[me].base
     view.waiting, view.unasked = miss.n, miss.unasked
     if reads == 0:
         return
     if reads & LOADS:
         show_load(s, view, miss.peer, now_ps)
     if reads & OBJECT:
-        view.object, view.owner, view.requests = obj, other, miss.requests
+        view.object, view.owner, view.requests = obj, view.other, miss.requests
         view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
-        view.holders = holder_offsets(s)[obj + 1] - holder_offsets(s)[obj]
+        first, end = holders_of(s, me, obj)
+        view.holders = end - first
     if reads & WAY:
         view.hops = hops(topology(s), me, other)
         view.send_ps, view.receive_ps, view.flight_ps = fetch_ps(s, me, obj)
@@ -101,7 +98,7 @@ def show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
     """What a PE knows of itself, and what chance gives it."""
     pe = pes(s)[me]
     if groups & SELF:
-        view.now_ps, view.me = now_ps, me
+        view.now_ps, view.me = now_ps, pe.place
         view.ready, view.held_bytes = pe.n_ready, pe.held_bytes
     if groups & DONE:
         view.finished, view.fetched, view.released = pe.finished, pe.fetched, pe.released

@@ -12,6 +12,8 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
 from simmpp.engine.arrays.records import (
     BEGIN,
+    BY_PE,
+    BY_THREAD,
     DISPATCH,
     NONE,
     SAMPLED,
@@ -26,7 +28,6 @@ from simmpp.engine.arrays.views import (
     itinerary_offsets,
     messages,
     misses,
-    peer_rows,
     pes,
     rays,
     test_ps,
@@ -38,7 +39,7 @@ from simmpp.engine.pe.costs import receiving_ps
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import admit_object, touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.peers import note_exchange, peer_of, sample_loads
+from simmpp.engine.pe.peers import hear_load, sample_loads
 from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
 from simmpp.engine.pe.sending import answer, forget, parts_ps
 from simmpp.engine.pe.talking import get_on, hear, rest, wake
@@ -107,11 +108,18 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def receive(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Unpack one message and do what it asks for; returns the end of that work."""
+    """Unpack one message and do what it asks for; returns the end of that work.
+
+    If a thread has done that already, take the message over.
+    """
     pe, m = pes(s)[me], messages(s)[message]
-    clock_ps = now_ps + receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
-    # Heard before an answer is packed, and whatever the message is.
-    _hear(s, me, m.source, m.load, m.kind, clock_ps)
+    if s.service == BY_THREAD:
+        clock_ps = now_ps + s.handoff_ps
+    else:
+        clock_ps = now_ps + unpacking_ps(s, me, message)
+        # Heard before an answer is packed, and whatever the message is.
+        hear_load(s, me, m, clock_ps)
+        s.received += 1
     pe.received_load = 1 if m.kind == LOAD else 0
     links = hops(topology(s), m.source, me) if s.record_hops else 0
     part = message
@@ -124,17 +132,24 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         note_load(s, me, clock_ps)
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
-    clock_ps = answer(s, me, message, clock_ps)
+    if s.service == BY_PE:
+        clock_ps = answer(s, me, message, clock_ps)
     if m.kind == USER:
         clock_ps = hear(s, me, message, clock_ps)
     elif m.kind == OBJECT or m.kind == RAYS:
         get_on(pe)
-    s.received += 1
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     forget(s, message)
     return clock_ps
+
+
+@kernel
+def unpacking_ps(s: Run, me: int, message: int) -> int:
+    """What a message costs its receiver."""
+    m = messages(s)[message]
+    return receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
 
 
 @kernel
@@ -158,18 +173,6 @@ def _cross(s: Run, first: int, n: int, links: int) -> None:
     for _ in range(n):
         rays(s)[ray].hops += links
         ray = rays(s)[ray].next
-
-
-@kernel
-def _hear(s: Run, me: int, source: int, load: int, kind: int, now_ps: int) -> None:
-    """Remember the load in a header, and whom rays or objects came from."""
-    if s.listens:
-        peer_row = peer_of(s, me, source)
-        peer_rows(s)[peer_row].load = load
-        peer_rows(s)[peer_row].heard_ps = now_ps
-        peer_rows(s)[peer_row].in_flight = 0
-        if s.refresh_ps != NONE and kind in (OBJECT, RAYS):
-            note_exchange(s, me, peer_row)
 
 
 @kernel

@@ -2,17 +2,28 @@
 
 A message is USER_WORDS numbers; it is sent, travels and is received as any other. Whatever the
 hooks say, a run ends: between two things that get a PE on (a test, a finished ray, a message with
-rays or objects) it sends at most 2 (nb - 1) of them and is woken as many times, at least
-WAKING_PS apart.
+rays or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many times,
+at least WAKING_PS apart.
 """
 
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import NONE, PACK, REST, SLEEP, UNPACK, WOKEN, Row, Run
+from simmpp.engine.arrays.records import (
+    BY_NIC,
+    BY_THREAD,
+    NONE,
+    PACK,
+    REST,
+    SLEEP,
+    UNPACK,
+    WOKEN,
+    Row,
+    Run,
+)
 from simmpp.engine.arrays.views import copy_costs, messages, pes, topology, user_words
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps
+from simmpp.engine.pe.costs import copy_ps, sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.peers import peer_of
 from simmpp.engine.pe.sending import send_user
 from simmpp.engine.pe.showing import show_load, show_nothing, show_self, view_of
@@ -46,7 +57,7 @@ def hear(s: Run, me: int, message: int, now_ps: int) -> int:
         view.words[i] = user_words(s)[USER_WORDS * message + i]
     if consult(s.heard, view) <= 0:
         return now_ps
-    return _say(s, view, me, source, now_ps)
+    return _say(s, view, me, source - pes(s)[me].base, now_ps)
 
 
 @kernel
@@ -81,7 +92,7 @@ def wake(s: Run, me: int, now_ps: int) -> None:
 
 @kernel
 def _most(s: Run) -> int:
-    return 2 * (s.processors - 1)
+    return 2 * (s.island - 1)
 
 
 @kernel
@@ -103,21 +114,23 @@ def _ask(s: Run, me: int, pe: Row, now_ps: int) -> int:
 
 
 @kernel
-def _say(s: Run, view: View, me: int, other: int, now_ps: int) -> int:
-    """Send the words in the view to a PE; one that is nobody, or one too many, is dropped."""
+def _say(s: Run, view: View, me: int, place: int, now_ps: int) -> int:
+    """Send the words in the view to a PE of the island; what is for nobody, or one too many, is
+    dropped."""
     pe = pes(s)[me]
-    if other < 0 or other >= s.processors or other == me or pe.user_sent >= _most(s):
+    is_someone = 0 <= place < s.island and place != pe.place
+    if not is_someone or pe.user_sent >= _most(s):
         s.user_dropped += 1
         return now_ps
     pe.user_sent += 1
-    return send_user(s, me, other, view, now_ps)
+    return send_user(s, me, pe.base + place, view, now_ps)
 
 
 @kernel
 def _show(s: Run, view: View, me: int, other: int, now_ps: int, reads: int) -> None:
     """Show ``heard`` who has sent a message, ``idle`` nobody."""
     pe = pes(s)[me]
-    view.load, view.other = pe.load, other
+    view.load, view.other = pe.load, NONE if other == NONE else other - pe.base
     view.waiting, view.unasked = pe.load - pe.n_ready, 0
     if reads == 0:
         return
@@ -128,11 +141,22 @@ def _show(s: Run, view: View, me: int, other: int, now_ps: int, reads: int) -> N
         if other != NONE:
             show_load(s, view, peer_of(s, me, other), now_ps)
     if reads & WAY:
-        n_bytes = USER_WORDS * WORD_BYTES
-        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + USER], n_bytes)
-        view.receive_ps = s.receive_startup_ps + copy_ps(copy_costs(s)[UNPACK + USER], n_bytes)
-        view.hops = view.flight_ps = 0
-        if other != NONE:
-            view.hops = hops(topology(s), me, other)
-            view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes)
+        _show_way(s, view, me, other)
     show_self(s, view, me, now_ps, reads)
+
+
+@kernel
+def _show_way(s: Run, view: View, me: int, other: int) -> None:
+    """What words cost on their way to another PE; to nobody yet without the startups of a level."""
+    n_bytes = USER_WORDS * WORD_BYTES
+    if other == NONE:
+        view.send_ps = s.send_startup_ps + copy_ps(copy_costs(s)[PACK + USER], n_bytes)
+        receipt_ps = s.completion_ps if s.service == BY_NIC else s.receive_startup_ps
+        receipt_ps += copy_ps(copy_costs(s)[UNPACK + USER], n_bytes)
+        view.receive_ps = s.handoff_ps if s.service == BY_THREAD else receipt_ps
+        view.hops = view.flight_ps = 0
+        return
+    view.send_ps = sent_alone_ps(s, me, other, USER, n_bytes)
+    view.receive_ps, by_thread_ps = taken_in_ps(s, me, other, USER, n_bytes)
+    view.hops = hops(topology(s), me, other)
+    view.flight_ps = flight_ps(s, me, other, n_bytes + s.header_bytes) + by_thread_ps

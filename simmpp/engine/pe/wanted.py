@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import first, following
-from simmpp.engine.arrays.records import PACK, UNPACK, Run
+from simmpp.engine.arrays.records import BY_NIC, Run
 from simmpp.engine.arrays.views import (
-    copy_costs,
     miss_rows,
     object_bytes,
-    owners,
     peer_rows,
     sendable,
 )
 from simmpp.engine.network import flight_ps
-from simmpp.engine.pe.costs import copy_ps, receiving_ps, sending_ps
+from simmpp.engine.pe.costs import received_alone_ps, sent_alone_ps, taken_in_ps
+from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.misses import is_holder
 from simmpp.machine.messages import OBJECT, REQUEST
 from simmpp.policy.view import View
@@ -23,16 +22,15 @@ from simmpp.policy.view import View
 @kernel
 def fetch_ps(s: Run, me: int, obj: int) -> tuple[int, int, int]:
     """What sending the request costs, what receiving the object, and the time in between."""
-    costs, asked, owner = copy_costs(s), s.request_bytes, owners(s)[obj]
-    n_bytes = object_bytes(s)[obj]
-    send_ps = sending_ps(s, me, owner, REQUEST) + copy_ps(costs[PACK + REQUEST], asked)
-    unpack_ps = copy_ps(costs[UNPACK + OBJECT], n_bytes)
-    receive_ps = receiving_ps(s, me, owner, OBJECT) + unpack_ps
-    there_ps = flight_ps(s, me, owner, asked + s.header_bytes)
-    back_ps = flight_ps(s, owner, me, n_bytes + s.header_bytes)
-    answer_ps = receiving_ps(s, owner, me, REQUEST) + copy_ps(costs[UNPACK + REQUEST], asked)
-    answer_ps += sending_ps(s, owner, me, OBJECT) + copy_ps(costs[PACK + OBJECT], n_bytes)
-    return send_ps, receive_ps, there_ps + answer_ps + back_ps
+    asked, owner, n_bytes = s.request_bytes, owner_of(s, me, obj), object_bytes(s)[obj]
+    send_ps = sent_alone_ps(s, me, owner, REQUEST, asked)
+    receive_ps, between_ps = taken_in_ps(s, me, owner, OBJECT, n_bytes)
+    between_ps += flight_ps(s, me, owner, asked + s.header_bytes)
+    between_ps += flight_ps(s, owner, me, n_bytes + s.header_bytes)
+    if s.service != BY_NIC:
+        between_ps += received_alone_ps(s, owner, me, REQUEST, asked)
+        between_ps += sent_alone_ps(s, owner, me, OBJECT, n_bytes)
+    return send_ps, receive_ps, between_ps
 
 
 @kernel

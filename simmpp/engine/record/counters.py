@@ -108,7 +108,7 @@ def note_finished(s: Run, n_rays: int, now_ps: int) -> None:
 @kernel
 def note_departure(s: Run, m: Row) -> None:
     """A message has been packed; rays in it, or in others that were made up with it, have left."""
-    _count_message(s, m, 1)
+    count_message(s, m, 1)
     note_load(s, m.source, m.depart_ps)
     if m.kind == RAYS:
         moment = _moment(s, m.depart_ps)
@@ -118,7 +118,8 @@ def note_departure(s: Run, m: Row) -> None:
 
 
 @kernel
-def _count_message(s: Run, m: Row, n: int) -> None:
+def count_message(s: Run, m: Row, n: int) -> None:
+    """Count a message that departs; with -1, one that never will."""
     n_bytes = m.payload_bytes + s.header_bytes
     pair = traffic(s)[m.source * s.processors + m.destination]
     pair.messages += n
@@ -174,4 +175,4 @@ def end_counting(runs: NDArray[np.void]) -> None:
     for row in range(message_marks(s)[USED]):
         m = messages(s)[row]
         if m.kind != NONE and m.depart_ps > s.last_ray_ps:
-            _count_message(s, m, -1)
+            count_message(s, m, -1)

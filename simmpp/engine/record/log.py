@@ -1,8 +1,10 @@
 """The event log: one row per arrival, and per message unpacked, computation and message packed.
 
 A PE does these one after the other, so its rows are the slices of its time; where there is none it
-is idle. Rows are written when they begin, in the order of the engine's events, into a buffer that
-is handed on whenever it is full.
+is idle. So it is with its thread, if there is one: that serves (unpacks) and answers (packs), and
+what the PE receives then is taken over. A network card answers in no time. Rows are written when
+they begin, in the order of the engine's events, into a buffer that is handed on whenever it is
+full.
 """
 
 from __future__ import annotations
@@ -13,14 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND, Run
+from simmpp.engine.arrays.records import (
+    ANSWER,
+    ARRIVAL,
+    COMPUTE,
+    EVENT,
+    NONE,
+    RECEIVE,
+    SEND,
+    SERVE,
+    Run,
+)
 from simmpp.engine.arrays.views import log, messages, pes
 from simmpp.machine.messages import OBJECT, REQUEST
 
 LOG_ROWS = 1 << 13
 """Rows that are kept before they are handed on: half a megabyte."""
-EVENT_KINDS = ("arrival", "receive", "compute", "send")
-"""Names of the field ``event``: ARRIVAL, RECEIVE, COMPUTE, SEND."""
+EVENT_KINDS = ("arrival", "receive", "compute", "send", "serve", "answer")
+"""Names of the field ``event``: ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE, ANSWER."""
 
 _WORDS = EVENT.itemsize // 8
 
@@ -61,6 +73,31 @@ def note_send(s: Run, me: int, message: int, begin_ps: int) -> None:
     m = messages(s)[message]
     _note(s, me, SEND, 0, m.n, begin_ps, m.depart_ps)
     _note_message(s, message, m.destination)
+
+
+@kernel
+def note_serve(s: Run, me: int, message: int, begin_ps: int, end_ps: int) -> None:
+    """A thread unpacked a message."""
+    m = messages(s)[message]
+    _note(s, me, SERVE, 0, m.n, begin_ps, end_ps)
+    _note_message(s, message, m.source)
+    _hide_load(s)
+
+
+@kernel
+def note_answer(s: Run, message: int, begin_ps: int) -> None:
+    """A thread packed an object, or a network card sends what it was asked for."""
+    m = messages(s)[message]
+    _note(s, m.source, ANSWER, 0, m.n, begin_ps, m.depart_ps)
+    _note_message(s, message, m.destination)
+    _hide_load(s)
+
+
+@kernel
+def _hide_load(s: Run) -> None:
+    """The PE may be in the middle of an activity."""
+    event = log(s)[s.n_logged - 1]
+    event.load, event.ready = NONE, NONE
 
 
 @kernel
@@ -122,7 +159,7 @@ def _close_gaps(words: NDArray[np.int64], gaps: NDArray[np.int64]) -> None:
 def hand_on_last(rows: NDArray[np.void], makespan_ps: int, sink: Sink) -> None:
     """The run is over: what goes on ends here, and what has not departed never will."""
     rows["end_ps"] = makespan_ps
-    rows["number"][rows["event"] == SEND] = NONE
+    rows["number"][np.isin(rows["event"], (SEND, ANSWER))] = NONE
     begun = rows["time_ps"] < makespan_ps
     sink(_words(rows)[begun].view(EVENT)[:, 0])
 

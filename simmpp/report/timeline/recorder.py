@@ -8,18 +8,19 @@ from typing import Protocol
 
 from simmpp.common.files import naming, replaced
 from simmpp.engine.record.log import Sink
-from simmpp.machine.machine import Machine
+from simmpp.machine.machine import NIC, THREAD, Machine
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.timeline.slices import Timeline, TimelinePart, Window
 from simmpp.run.point import PolicyRun
 
+_SERVERS = {THREAD: "thread", NIC: "network card"}
 SUFFIXES = (".json", ".json.gz", ".parquet")
 
 
 class TimelineFile(Protocol):
     """A file that timelines go into, run after run, part after part."""
 
-    def begin(self, title: str, processors: int) -> None:
+    def begin(self, title: str, processors: int, server: str = "") -> None:
         """What is written from now on is the run of this policy."""
 
     def add(self, part: TimelinePart) -> None:
@@ -46,8 +47,9 @@ class TimelineRecorder:
 
     def begin(self, policy: PolicyParameters) -> Sink:
         """What gets the event log of a policy's run."""
-        self._file.begin(policy.title, self._machine.processors)
-        timeline = Timeline(self._machine.processors, self._machine.probe_ps, self._window)
+        nb, service = self._machine.processors, self._machine.service
+        self._file.begin(policy.title, nb, _SERVERS.get(service, ""))
+        timeline = Timeline(nb, self._machine.probe_ps, self._window, service)
         self._timeline = timeline
         return lambda rows: self._add(timeline.add(rows))
 

@@ -13,14 +13,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, EVENT, NONE, RECEIVE, SEND
+from simmpp.engine.arrays.records import (
+    ANSWER,
+    ARRIVAL,
+    COMPUTE,
+    EVENT,
+    NONE,
+    RECEIVE,
+    SEND,
+    SERVE,
+)
 from simmpp.engine.record.log import EVENT_KINDS
+from simmpp.machine.machine import NIC, POLLED, THREAD
+from simmpp.machine.messages import RAYS
 
 IDLE, PROBE = len(EVENT_KINDS), len(EVENT_KINDS) + 1
 SLICE_KINDS = (*EVENT_KINDS, "idle", "probe")
 """Names of the field ``event`` of a slice."""
 COMMUNICATION = (RECEIVE, SEND, PROBE)
 """Slices that a PE's account of communication is the sum of."""
+OF_SERVERS = (SERVE, ANSWER)
+"""Slices of who serves beside the PE: its thread, or its network card, which takes no time."""
 
 Rows = NDArray[np.void]
 Times = NDArray[np.int64]
@@ -43,15 +56,19 @@ class TimelinePart:
     """A stretch of a timeline: what some rows of the event log add to it."""
 
     slices: Rows
-    """(n,) EVENT without arrivals, with IDLE and PROBE; those of a PE touch one another."""
+    """(n,) EVENT without arrivals, with IDLE and PROBE; those of a PE touch one another, those of
+    what serves beside it come behind."""
     arrivals: Rows
     """(a,) EVENT."""
     loads: Rows
     """(c,) EVENT: slices at whose end the PE's load, or its ready part, was another than before."""
     arrows: Rows
-    """(m,) EVENT: RECEIVE rows of messages of which both ends are in the window."""
+    """(m,) EVENT: RECEIVE rows (SERVE, with threads) of messages of which both ends are in the
+    window; with network cards what is got comes from there, and the get itself has none."""
     tails_ps: Times
-    """(m,) int64: when the packing of the message of each arrow began."""
+    """(m,) int64: when the packing of the message of each arrow began,"""
+    tails_served: NDArray[np.bool_]
+    """(m,) bool: and whether it was an answer of what serves beside the PE."""
     flights_ps: Times
     """(f,) int64: when the number of messages in flight changed."""
     in_flight: Times
@@ -61,18 +78,24 @@ class TimelinePart:
 class Timeline:
     """Makes a timeline of the rows of one run's event log, part by part, in bounded memory."""
 
-    def __init__(self, processors: int, probe_ps: int, window: Window) -> None:
+    def __init__(
+        self, processors: int, probe_ps: int, window: Window, service: str = POLLED
+    ) -> None:
+        self._service = service
         self._probe_ps = probe_ps
         self._window = window
         self._ended_ps = np.zeros(processors, np.int64)
         self._held = np.full((2, processors), NONE, np.int64)
         self._in_flight = 0
-        self._packed = np.zeros((2, 0), np.int64)
+        self._packed = np.zeros((3, 0), np.int64)
 
     def add(self, rows: Rows) -> TimelinePart:
         """The part that more rows of the event log make."""
-        arrived = rows["event"] == ARRIVAL
-        return self._part(self._filled(rows[~arrived]), rows[arrived])
+        arrived, served = rows["event"] == ARRIVAL, is_of_server(rows)
+        slices = self._filled(rows[~arrived & ~served])
+        if served.any():
+            slices = np.concatenate([slices, rows[served]])
+        return self._part(slices, rows[arrived])
 
     def end(self, makespan_ps: int) -> TimelinePart:
         """The last part: idle to the end."""
@@ -84,9 +107,11 @@ class Timeline:
         flights_ps, in_flight = self._flights(slices, arrivals)
         loads = self._changed(slices)
         slices = self._cut(slices)
-        arrows, tails_ps = self._arrows(slices)
+        arrows, tails_ps, tails_served = self._arrows(slices)
         arrivals = arrivals[self._window.holds(arrivals["time_ps"])]
-        return TimelinePart(slices, arrivals, loads, arrows, tails_ps, flights_ps, in_flight)
+        return TimelinePart(
+            slices, arrivals, loads, arrows, tails_ps, tails_served, flights_ps, in_flight
+        )
 
     def _filled(self, work: Rows) -> Rows:
         """Work with what lies between: idle time, and the probes that computations begin with."""
@@ -127,11 +152,14 @@ class Timeline:
         slices["end_ps"] = np.minimum(slices["end_ps"], window.end_ps)
         return slices
 
-    def _arrows(self, slices: Rows) -> tuple[Rows, Times]:
+    def _arrows(self, slices: Rows) -> tuple[Rows, Times, NDArray[np.bool_]]:
         """Messages received here, and when their packing began: sends are kept until then."""
-        sent = slices[(slices["event"] == SEND) & (slices["number"] != NONE)]
-        received = slices[slices["event"] == RECEIVE]
-        packed = np.array([_keys(sent["pe"], sent["number"]), sent["time_ps"]], np.int64)
+        sent = slices[_departs(slices)]
+        if self._service == NIC:  # no one receives a get
+            sent = sent[(sent["event"] == ANSWER) | (sent["kind"] == RAYS)]
+        received = slices[slices["event"] == (SERVE if self._service == THREAD else RECEIVE)]
+        keys = _keys(sent["pe"], sent["number"])
+        packed = np.array([keys, sent["time_ps"], sent["event"] == ANSWER], np.int64)
         packed = np.concatenate([self._packed, packed], axis=1)
         packed = packed[:, np.argsort(packed[0])]
         keys = _keys(received["other"], received["number"])
@@ -139,13 +167,13 @@ class Timeline:
         # A message that was sent before the window has no tail in it, and so no arrow.
         has_tail = np.append(packed[0], NONE)[places] == keys
         places = places[has_tail]
-        tails_ps = packed[1, places]
+        tails_ps, tails_served = packed[1, places], packed[2, places] == 1
         self._packed = np.delete(packed, places, axis=1)
-        return received[has_tail], tails_ps
+        return received[has_tail], tails_ps, tails_served
 
     def _flights(self, slices: Rows, arrivals: Rows) -> tuple[Times, Times]:
         """Messages in flight: departures and arrivals come in the order of time, part by part."""
-        departed = slices["end_ps"][(slices["event"] == SEND) & (slices["number"] != NONE)]
+        departed = slices["end_ps"][_departs(slices)]
         times_ps = np.concatenate([departed, arrivals["end_ps"]])
         changes = np.repeat([1, -1], [len(departed), len(arrivals)])
         order = np.argsort(times_ps, kind="stable")
@@ -156,6 +184,16 @@ class Timeline:
         is_last = np.diff(times_ps, append=NONE) != 0
         is_last &= self._window.holds(times_ps)
         return times_ps[is_last], in_flight[is_last]
+
+
+def is_of_server(rows: Rows) -> NDArray[np.bool_]:
+    """Which rows are of what serves beside a PE."""
+    return np.isin(rows["event"], OF_SERVERS)
+
+
+def _departs(rows: Rows) -> NDArray[np.bool_]:
+    """Which rows are of messages that depart at their end."""
+    return np.isin(rows["event"], (SEND, ANSWER)) & (rows["number"] != NONE)
 
 
 def _before(pes: Rows, values: Times, last: Times) -> Times:

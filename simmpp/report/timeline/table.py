@@ -18,7 +18,7 @@ _WORD = pa.dictionary(pa.int8(), pa.string())
 SCHEMA = pa.schema(
     [
         ("policy", _WORD),
-        ("event", _WORD),  # arrival, receive, compute, send, idle or probe
+        ("event", _WORD),  # arrival, receive, compute, send, serve, answer, idle or probe
         ("pe", pa.int32()),
         ("begin_ps", pa.int64()),
         ("end_ps", pa.int64()),  # of a send: when the message departs
@@ -46,7 +46,7 @@ class TimelineTable:
         self._writer = parquet.ParquetWriter(self._file, SCHEMA, compression="zstd")
         self._policies: list[str] = []
 
-    def begin(self, title: str, processors: int) -> None:
+    def begin(self, title: str, processors: int, server: str = "") -> None:
         """What is written from now on is the run of this policy."""
         self._policies.append(title)
 

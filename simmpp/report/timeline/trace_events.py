@@ -1,9 +1,10 @@
 """Timelines as Trace Event JSON, which Perfetto (https://ui.perfetto.dev) and Chrome open.
 
-A policy is a process, a PE a thread. Format: "Trace Event Format" of the Catapult project. Its
-times are microseconds; six decimals make them exact picoseconds. Slices are pairs of begin and end,
-not events with a duration: Perfetto rounds each number to nanoseconds, and would drop a slice whose
-rounded begin and duration reach into the next one.
+A policy is a process, a PE a thread, and so is what serves beside it, if anything does. Format:
+"Trace Event Format" of the Catapult project. Its times are microseconds; six decimals make them
+exact picoseconds. Slices are pairs of begin and end, not events with a duration: Perfetto rounds
+each number to nanoseconds, and would drop a slice whose rounded begin and duration reach into the
+next one.
 """
 
 from __future__ import annotations
@@ -24,16 +25,19 @@ from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.report.timeline.slices import (
     COMMUNICATION,
     IDLE,
+    OF_SERVERS,
     SLICE_KINDS,
     Rows,
     TimelinePart,
     Times,
+    is_of_server,
 )
 
 PS_PER_US = 10**6
 _NAMES = [f"{event} {kind}".rstrip() for event in SLICE_KINDS for kind in (*MESSAGE_KINDS, "")]
 _N = len(MESSAGE_KINDS) + 1
 _CATEGORY = {COMPUTE: "compute", IDLE: "idle"} | dict.fromkeys(COMMUNICATION, "communication")
+_CATEGORY |= dict.fromkeys(OF_SERVERS, "service")
 _CATEGORIES = [_CATEGORY.get(event, "") for event in range(len(SLICE_KINDS))]
 _COMPRESSION = 3
 
@@ -50,16 +54,20 @@ class TraceEvents:
         if is_zipped:  # without a date: equal runs give equal bytes
             self._zipped = gzip.GzipFile("", "wb", _COMPRESSION, self._file, mtime=0)
         self._process = 0
+        self._processors = 0
         self._arrows = 0
         self._is_empty = True
         self._write(b'{"displayTimeUnit":"ns","traceEvents":[')
 
-    def begin(self, title: str, processors: int) -> None:
+    def begin(self, title: str, processors: int, server: str = "") -> None:
         """What is written from now on is the run of this policy."""
         self._process += 1
+        self._processors = processors
         self._name("process_name", 0, title)
         for pe in range(processors):
             self._name("thread_name", pe, f"PE {pe}")
+            if server:
+                self._name("thread_name", processors + pe, f"{server} of PE {pe}")
 
     def _name(self, what: str, pe: int, name: str) -> None:
         event = {"ph": "M", "pid": self._process, "tid": pe + 1, "name": what}
@@ -69,7 +77,7 @@ class TraceEvents:
         """Write a part of the timeline."""
         slices, loads, arrows = part.slices, part.loads, part.arrows
         self._events(len(slices), self._slices(slices))
-        self._events(len(arrows), self._arrows_of(arrows, part.tails_ps))
+        self._events(len(arrows), self._arrows_of(part))
         self._events(len(loads), self._loads(loads))
         self._events(len(part.flights_ps), self._flights(part.flights_ps, part.in_flight))
 
@@ -82,7 +90,8 @@ class TraceEvents:
 
     def _slices(self, rows: Rows) -> list[Texts]:
         """Begin and end of each; a PE's come one after the other, as ties need."""
-        track = [f'"pid":{self._process},"tid":', _whole(rows["pe"] + 1), ',"ts":']
+        track = [f'"pid":{self._process},"tid":', self._track(rows["pe"], is_of_server(rows))]
+        track.append(',"ts":')
         return [
             '{"ph":"B",', *track, _us(rows["time_ps"]),
             # Kind NONE, -1, is the last modulo all: the name without a kind, behind those with one.
@@ -91,8 +100,13 @@ class TraceEvents:
             '"', _arguments(rows), '},\n{"ph":"E",', *track, _us(rows["end_ps"]), "}",
         ]  # fmt: skip
 
-    def _arrows_of(self, rows: Rows, tails_ps: Times) -> list[Texts]:
+    def _track(self, pes: NDArray[np.integer], served: NDArray[np.bool_]) -> Texts:
+        """The number of a PE's thread in the file, or of what serves beside the PE."""
+        return _whole(pes + 1 + self._processors * served)
+
+    def _arrows_of(self, part: TimelinePart) -> list[Texts]:
         """From the packing of a message, at whose end it departs, to its receipt."""
+        rows, tails_ps = part.arrows, part.tails_ps
         numbers = _whole(self._arrows + np.arange(len(rows)))
         self._arrows += len(rows)
         common = [
@@ -101,8 +115,9 @@ class TraceEvents:
             '","id":', numbers, ',"tid":',
         ]  # fmt: skip
         return [
-            '{"ph":"s",', *common, _whole(rows["other"] + 1), ',"ts":', _us(tails_ps),
-            '},\n{"ph":"f","bp":"e",', *common, _whole(rows["pe"] + 1),
+            '{"ph":"s",', *common, self._track(rows["other"], part.tails_served),
+            ',"ts":', _us(tails_ps),
+            '},\n{"ph":"f","bp":"e",', *common, self._track(rows["pe"], is_of_server(rows)),
             ',"ts":', _us(rows["time_ps"]), "}",
         ]  # fmt: skip
 

@@ -24,7 +24,7 @@ from simmpp.engine.result import Result
 from simmpp.engine.simulate import DEFAULT_ENGINE, simulate
 from simmpp.machine.machine import Machine
 from simmpp.placement.place import rotated
-from simmpp.placement.placement import Placement, PlacementRules
+from simmpp.placement.placement import Placement, PlacementRules, island_of
 from simmpp.placement.residents import resident_count
 from simmpp.policy.parameters import REFERENCE, PolicyParameters, policy_of
 from simmpp.run.profit import ratio
@@ -107,16 +107,16 @@ def estimate(
             workload, machine, placement, policy, engine=engine, ready_order=ready_order
         )
 
-    xs = node_fractions(min(wanted))
+    xs, island = node_fractions(min(wanted)), island_of(rules, machine.processors)
     nodes: list[list[Node]] = [[] for _ in named]
     for draw in range(seed, seed + replicates):
         placements = rotated(workload, machine.processors, xs, rules, draw)
         for x, placement in zip(xs, placements, strict=True):
-            at = share_of(x, workload.n_objects, machine.processors)
+            at = share_of(x, workload.n_objects, island)
             reference = run(placement, PolicyParameters(REFERENCE))
             for of_policy, policy in zip(nodes, named, strict=True):
                 of_policy.append(node_of(placement, at, reference, run(placement, policy)))
-    shares = np.array([share_of(x, workload.n_objects, machine.processors) for x in wanted])
+    shares = np.array([share_of(x, workload.n_objects, island) for x in wanted])
     return [
         Estimate(policy.title, fraction, *numbers)
         for policy, of_policy in zip(named, nodes, strict=True)
@@ -145,11 +145,14 @@ def node_fractions(least: Fraction) -> list[Fraction]:
     return [least, *(x for x in NODES if x >= least + APART)]
 
 
-def share_of(fraction: Fraction, n_objects: int, processors: int) -> float:
-    """What a fraction comes to: residents of a PE / objects, where its own are always there."""
+def share_of(fraction: Fraction, n_objects: int, island: int) -> float:
+    """What a fraction comes to: residents of a PE / objects, where its own are always there.
+
+    An island of PEs owns all objects, without islands the whole machine.
+    """
     if n_objects == 0:
         return 1.0
-    return max(resident_count(fraction, n_objects) / n_objects, 1 / processors)
+    return max(resident_count(fraction, n_objects) / n_objects, 1 / island)
 
 
 def node_of(placement: Placement, at: float, reference: Result, result: Result) -> Node:

@@ -22,7 +22,8 @@ from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
 
 README = Path(__file__).parents[3] / "configs" / "README.md"
 CONSTANTS = [key_of(field.name) for field in fields(Machine) if field.name not in OTHERS]
-OTHERWISE = ("shape", "pack", "unpack", "test", "topology", "levels", "fat_tree", "contention")
+WORDS = ("topology", "service", "contention")
+OTHERWISE = ("shape", "pack", "unpack", "test", "levels", "fat_tree", *WORDS)
 UNKNOWN = ("power", "price")
 """Constants that some presets have no source for."""
 SCALARS = [key for key in CONSTANTS if key not in (*OTHERWISE, *UNKNOWN)]
@@ -82,7 +83,7 @@ def test_unknown_keys(name: str, line: str) -> None:
 
 def test_keys_within_a_key() -> None:
     assert [key.name for key in find_keys("placement")] == [
-        "placement", "placement.owners", "placement.pixels"
+        "placement", "placement.owners", "placement.pixels", "placement.islands"
     ]  # fmt: skip
     assert [key.name for key in find_keys("sweep.memory.fraction")] == ["sweep"]
     assert "pack.rays.fixed" in CliRunner().invoke(main, ["keys", "machine.pack"]).stdout

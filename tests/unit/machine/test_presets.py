@@ -12,7 +12,7 @@ from simmpp.machine.machine import UNLIMITED, CopyCost, TestCost
 from simmpp.machine.presets import OVERRIDDEN, layered, load_preset, machine, preset_names
 
 TORI = ["bluegene-l", "t3d", "t3e", "t3e-shmem", "tpu-v4", "xe6-hopper"]
-CHOICES = ("topology",)
+CHOICES = ("topology", "service")
 """Words, which have no range."""
 NAMES = sorted([*TORI, "cloud", "cpu-cluster", "gpu-cluster", "gpu-node"])
 

@@ -39,7 +39,7 @@ def limits_in(case: Case) -> tuple[Limits, Any]:
 
 
 def test_costs_of_messages() -> None:
-    assert MessageCosts(10 + 20, (2 + 6, 3 + 7, 4 + 8, 5 + 9), 100 + 30, 10**12) == COSTS
+    assert MessageCosts((10 + 20,) * 4, (2 + 6, 3 + 7, 4 + 8, 5 + 9), 100 + 30, 10**12) == COSTS
 
 
 def test_an_object_is_fetched() -> None:

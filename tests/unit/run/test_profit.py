@@ -17,6 +17,7 @@ def result(policy: str, makespan_ps: int, requests: int) -> Result:
         messages_by_kind=(requests, requests, 0, 0), parts_by_kind=(requests, requests, 0, 0),
         messages_received=2 * requests, bytes_sent=0,
         rays=0, tests=0, rays_sent=0, compute_ps=none, communication_ps=none, waiting_ps=none,
+        service_ps=none,
         pe_peak_rays=none, pe_peak_bytes=none, pe_peak_object_bytes=none, events=0,
     )  # fmt: skip
 
