@@ -4,7 +4,8 @@
 
 Rays of ``rays.py``: 4,096 start on each PE and each meets 4 different objects, drawn at random, so
 with N objects a PE uses each 16,384 / N times. PEs own their share, have nothing else at first and
-keep what they fetch. Each machine is a panel. Writes dataflow_map.csv (the time of each dataflow at
+keep what they fetch. Each machine is a panel, above where PEs serve requests, below where a thread
+or the network does. Writes dataflow_map.csv (the time of each dataflow at
 each point) but for machines that are in it, and the figure.
 """
 
@@ -39,8 +40,10 @@ sys.path.append(str(Path(__file__).parent))
 from rays import random_rays
 
 HERE = Path(__file__).parent
-MACHINES = {"t3e": 16, "cpu-cluster": 16, "gpu-cluster": 16, "gpu-node": 8}
+MACHINES = {"t3e": 32, "cpu-cluster": 32, "gpu-cluster": 32, "gpu-node": 8}
 """PEs of each."""
+BY_PE, BY_NIC = "pe", "nic"
+"""Who serves requests."""
 RAYS, EACH = 4096, 4
 USES = (1, 4, 16, 64, 256, 512)
 """Of an object by a PE: rays per fetch."""
@@ -50,6 +53,7 @@ POLICIES = {
     "object": ("object dataflow", "o", "#d55e00"),
     "ray": ("ray dataflow", "s", "#0072b2"),
     "concurrent": ("concurrent dataflow", "^", "#009e73"),
+    "cost": ("choice by time (cost)", "D", "#cc79a7"),
 }
 """How each is called and drawn: colours of Okabe and Ito, and a marker."""
 MARGINS = {1.05: 18, 1.5: 40, np.inf: 75}
@@ -60,8 +64,16 @@ Row = dict[str, Any]
 
 
 def machines() -> dict[str, Machine]:
-    """By name."""
-    return {f"{name}, service pe": machine(name, {}, nb) for name, nb in MACHINES.items()}
+    """By name: served by the PEs, then as the preset has it; on the T3E, by the network."""
+    found = {
+        f"{name}, service {BY_PE}": machine(name, {"service": BY_PE}, nb)
+        for name, nb in MACHINES.items()
+    }
+    for name, nb in MACHINES.items():
+        own = machine(name, {}, nb).service
+        service = own if own != BY_PE else BY_NIC
+        found[f"{name}, service {service}"] = machine(name, {"service": service}, nb)
+    return found
 
 
 def times_ps(made: Machine, workload: Workload) -> dict[str, int]:
@@ -93,8 +105,10 @@ def draw(rows: list[Row]) -> None:
             draw_panel(axes, [row for row in rows if row["machine"] == name], name)
         for axes in [*grid.flat][len(names) :]:
             axes.remove()
-        figure.supxlabel("bytes of an object", fontsize=9)
-        figure.supylabel("rays per fetch", fontsize=9)
+        for axes in grid[1]:
+            axes.set_xlabel("bytes of an object")
+        for axes in grid[:, 0]:
+            axes.set_ylabel("rays per fetch")
         legend(figure)
         save(figure, HERE / "dataflow_map")
 
@@ -123,7 +137,7 @@ def order(row: Row) -> list[str]:
 
 def area(row: Row) -> int:
     """The marker's, by T(second) / T(best)."""
-    best, second, _ = order(row)
+    best, second, *_ = order(row)
     margin = int(row[f"{second}_ps"]) / int(row[f"{best}_ps"])
     return next(area for bound, area in MARGINS.items() if margin <= bound)
 

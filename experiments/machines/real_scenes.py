@@ -3,10 +3,10 @@
     python experiments/machines/real_scenes.py
 
 A terrain of 65,522 triangles in clusters of 1 to 512, pixels dealt in blocks or one by one, on the
-machines of ``dataflow_map.py`` (160 x 160 pixels, shadows and all; PEs own their share and keep what
-they fetch). Rays per fetch and bytes are counted: uses of objects on PEs that do not own them, by
-the pairs of such a PE and object. Writes real_scenes.csv: T(object) / T(ray) of each, and that of
-the nearest point of the map, which has to be there.
+machines of ``dataflow_map.py`` (160 x 160 or 480 x 480 pixels, shadows and all; PEs own their share
+and keep what they fetch). Rays per fetch and bytes are counted: uses of objects on PEs that do not
+own them, by the pairs of such a PE and object. Writes real_scenes.csv: T(object) / T(ray) of each,
+and that of the nearest point of the map, which has to be there.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ from dataflow_map import SEED, machines
 HERE = Path(__file__).parent
 SIDE = 182
 """Vertices along each side."""
-CLUSTERS = (1, 8, 64, 512)
-RESOLUTION = 160
+CASES = ((1, 160), (8, 160), (64, 160), (512, 160), (64, 480), (512, 480))
+"""Triangles of a cluster at most, and pixels along each side."""
 PIXELS: tuple[Any, ...] = ("blocks", "interleaved")
 
 Row = dict[str, Any]
@@ -87,8 +87,8 @@ def simulated(points: list[Row]) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "terrain.obj"
         path.write_text(terrain())
-        for most in CLUSTERS:
-            workload = workload_for(load_scene(f"{path}:{most}"), Picture(resolution=RESOLUTION))
+        for most, side in CASES:
+            workload = workload_for(load_scene(f"{path}:{most}"), Picture(resolution=side))
             for pixels in PIXELS:
                 for name, made in machines().items():
                     memory = Memory(Fraction(0), transient=workload.n_objects)
@@ -103,6 +103,7 @@ def simulated(points: list[Row]) -> Iterator[Row]:
                     yield {
                         "machine": name,
                         "triangles": most,
+                        "resolution": side,
                         "pixels": pixels,
                         "bytes": round(n_bytes),
                         "rays_per_fetch": float(f"{uses:.3g}"),
