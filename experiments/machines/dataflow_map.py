@@ -40,14 +40,16 @@ sys.path.append(str(Path(__file__).parent))
 from rays import random_rays
 
 HERE = Path(__file__).parent
-MACHINES = {"t3e": 32, "cpu-cluster": 32, "gpu-cluster": 32, "gpu-node": 8}
+MACHINES = {"t3e": 16, "cpu-cluster": 16, "gpu-cluster": 16, "gpu-node": 8}
 """PEs of each."""
 BY_PE, BY_NIC = "pe", "nic"
 """Who serves requests."""
+LINKS = {"contention": "links"}
+"""Without it any number of gets would share a port at its full bandwidth each."""
 RAYS, EACH = 4096, 4
 USES = (1, 4, 16, 64, 256, 512)
 """Of an object by a PE: rays per fetch."""
-SIZES = (100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
+SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
 """Bytes of an object."""
 POLICIES = {
     "object": ("object dataflow", "o", "#d55e00"),
@@ -66,13 +68,13 @@ Row = dict[str, Any]
 def machines() -> dict[str, Machine]:
     """By name: served by the PEs, then as the preset has it; on the T3E, by the network."""
     found = {
-        f"{name}, service {BY_PE}": machine(name, {"service": BY_PE}, nb)
+        f"{name}, service {BY_PE}": machine(name, {"service": BY_PE, **LINKS}, nb)
         for name, nb in MACHINES.items()
     }
     for name, nb in MACHINES.items():
         own = machine(name, {}, nb).service
         service = own if own != BY_PE else BY_NIC
-        found[f"{name}, service {service}"] = machine(name, {"service": service}, nb)
+        found[f"{name}, service {service}"] = machine(name, {"service": service, **LINKS}, nb)
     return found
 
 
@@ -123,7 +125,7 @@ def draw_panel(axes: Axes, rows: list[Row], title: str) -> None:
     classical = [int(row["ray_ps"]) / int(row["object_ps"]) for row in rows]
     level = np.log(classical).reshape(len(USES), len(SIZES))
     axes.contour(SIZES, USES, level, [0.0], colors="black", linewidths=1.2)
-    axes.set(xscale="log", yscale="log", xlim=(50, 2e7), ylim=(0.6, 900))
+    axes.set(xscale="log", yscale="log", xlim=(50, 2e6), ylim=(0.6, 900))
     axes.set_yticks(USES, map(str, USES))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_minor_locator(NullLocator())
