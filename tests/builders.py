@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from simmpp.engine.capacity import needs_of
 from simmpp.machine.machine import (
     LEVELS,
     TOPOLOGY_NAMES,
@@ -24,6 +25,7 @@ from simmpp.machine.machine import (
 )
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.placement.placement import Placement
+from simmpp.placement.rooms import LEAST, Capacity, Room
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
 
@@ -364,6 +366,28 @@ def _some_islands(processors: int, seed: int) -> int:
     rng = np.random.default_rng((seed, 16))
     numbers = [n for n in range(1, processors + 1) if processors % n == 0]
     return int(_pick(rng, (1, 1, _pick(rng, numbers))))
+
+
+def with_capacity(case: Case, seed: int, **changes: Any) -> Case:
+    """The case on PEs whose memory ends: at the least, near it, or far beyond."""
+    rng = np.random.default_rng((seed, 17))
+    wishes = (Fraction(0), Fraction(1, 4), Fraction(2, 5), Fraction(1, 3), Room(0), Room(3000))
+    drawn = {
+        "bytes": LEAST,
+        "escape": "fetch",
+        "buffers": _pick(rng, wishes),
+        "fetch": _pick(rng, wishes),
+        "flow": "credits" if rng.random() < 0.9 else "none",
+    }
+    bounds = Capacity(**(drawn | changes))
+    case = with_policy(case, merge_requests=True)
+    case = replace(case, machine=replace(case.machine, service="pe"))
+    case = replace(case, placement=replace(case.placement, capacity=bounds))
+    beyond = int(_pick(rng, (0, 0, 1, 100, 1000, 10_000, 50_000)))
+    if beyond and "bytes" not in changes:
+        least = needs_of(case.workload, case.machine, case.placement, case.policy).least_bytes
+        bounds = replace(bounds, bytes=least + beyond)
+    return replace(case, placement=replace(case.placement, capacity=bounds))
 
 
 def on_torus(case: Case) -> Case:

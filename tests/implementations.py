@@ -6,6 +6,7 @@ from builders import Case
 from oracles.ledger import Activity, Outcome, Slice, in_order, who
 from oracles.machine import simulate as simulate_slowly
 
+from simmpp.engine import memory_use
 from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.result import Result
@@ -40,7 +41,7 @@ def result_of(engine: str, case: Case) -> Result:
         engine=engine,
         ready_order=case.ready_order,
         seed=SEED,
-        record=Recording(log=True, tests=True, hops=True),
+        record=Recording(log=True, tests=True, hops=True, ends=True),
     )
 
 
@@ -57,6 +58,7 @@ def outcome_of(result: Result) -> Outcome:
             slices.append(Slice(begin=time_ps, what=event, end=r.pop("end_ps"), **r))
     slices.sort(key=who)
     tested_rays = [] if result.tested_rays is None else result.tested_rays.tolist()
+    use = result.memory
     tested_objects = [] if result.tested_objects is None else result.tested_objects.tolist()
     return Outcome(
         makespan_ps=result.makespan_ps,
@@ -82,6 +84,8 @@ def outcome_of(result: Result) -> Outcome:
         slices=slices,
         tested=list(zip(tested_rays, tested_objects, strict=True)),
         ray_hops=[] if result.ray_hops is None else result.ray_hops.tolist(),
+        ray_ends=[] if result.ray_ends_ps is None else result.ray_ends_ps.tolist(),
+        memory={} if use is None else {name: getattr(use, name) for name in memory_use.COLUMNS},
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from rich.progress import TaskID
 
 from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
+from simmpp.commands.parts.pictures import until_of, write_picture, write_unfinished
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import (
@@ -40,7 +42,6 @@ from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
-from simmpp.workload.trace.shading import render, save_png
 from simmpp.workload.trace.verify import verify
 
 
@@ -63,6 +64,11 @@ from simmpp.workload.trace.verify import verify
 )
 @options.path("--out", "Folder for run.json and results.csv.")
 @options.path("--picture", "Write the picture as PNG.")
+@click.option(
+    "--until",
+    metavar="TIME",
+    help="With --picture: also what of it each policy has finished by then, such as '5 ms'.",
+)
 @options.path(
     "--timeline",
     "Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
@@ -91,6 +97,7 @@ def run_command(
     overrides: tuple[str, ...],
     out: Path | None,
     picture: Path | None,
+    until: str | None,
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
@@ -106,6 +113,7 @@ def run_command(
     config = load_config(config_path, (*overrides, *engine), may_run=may_run)
     tell_files(config)
     options.writable(picture, "--picture", ".png")
+    until_ps = until_of(until, picture)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -120,7 +128,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-    looks = Looks(picture, timeline, window_ps, figures)
+    looks = Looks(picture, until_ps, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -131,11 +139,12 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config, simulating=True))
     if looks.picture:
-        _write_picture(point, looks.picture)
+        write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
     try:
         with recorders_of(point, looks) as recorders:
-            _simulate(point, runs, recorders, record_tests=verify)
+            record = Recording(tests=verify, ends=looks.until_ps is not None)
+            _simulate(point, runs, recorders, record)
     finally:
         if out and runs:
             write_record(record_of_run(point, runs), out / RECORD)
@@ -143,13 +152,16 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     _print(point, runs)
     _warn_of_window(runs, looks)
     print_reading(config)
-    _print_files(out, looks)
+    unfinished: list[Path] = []
+    if looks.picture and looks.until_ps is not None:
+        unfinished = write_unfinished(point, runs, looks.picture, looks.until_ps)
+    _print_files(out, looks, unfinished)
     if verify:
         _verify(point, runs)
 
 
 def _simulate(
-    point: Point, runs: list[PolicyRun], recorders: list[Recorder], *, record_tests: bool
+    point: Point, runs: list[PolicyRun], recorders: list[Recorder], record: Recording
 ) -> None:
     """Append each policy's run to ``runs`` as it is finished, with a bar for each."""
     counts = any(recorder.needs_counters for recorder in recorders)
@@ -167,7 +179,7 @@ def _simulate(
 
         finished = run_point(
             point,
-            record=Recording(tests=record_tests, counters=counts, hops=counts),
+            record=replace(record, counters=counts, hops=counts),
             log_of=partial(sink_of, recorders),
             progress=progress,
         )
@@ -204,22 +216,16 @@ def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
         notice(f"warning: --timeline-window: {told}")
 
 
-def _print_files(out: Path | None, looks: Looks) -> None:
+def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
-    files = [*rows, *filter(None, (looks.picture, looks.timeline, looks.figures))]
+    looked = (looks.picture, *unfinished, looks.timeline, looks.figures)
+    files = [*rows, *filter(None, looked)]
     if files:
         say()
     wrote(*files)
     if out:
         go_on("report", out)
-
-
-def _write_picture(point: Point, path: Path) -> None:
-    """The picture that one processor alone would make."""
-    with at_work("drawing the picture"):
-        scene = scene_of(point.config.ray_source, "--picture")()
-        save_png(render(scene, point.config.picture, point.workload), path)
 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:

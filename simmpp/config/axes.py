@@ -21,8 +21,6 @@ MOST_VALUES = 1000
 SAME = {
     "memory.fraction": "memory.bytes",
     "memory.bytes": "memory.fraction",
-    "memory.transient": "memory.fetch",
-    "memory.fetch": "memory.transient",
 }
 """Keys that say the same in another way: setting one takes the other back."""
 

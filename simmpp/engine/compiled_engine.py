@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
-from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import link
 from simmpp.engine.arrays.records import BY_THREAD, NONE, SLEEP, WOKEN, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
@@ -24,11 +23,12 @@ from simmpp.engine.event_heap import (
 )
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
+from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.gets import is_get, send_back
 from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
-from simmpp.engine.state import State, room_lacking, starved
+from simmpp.engine.state import State, room_lacking
 
 FIRST_EVENTS, MOST_EVENTS = 1 << 10, 1 << 20
 """Handled in one call, in which Ctrl-C and a point's timeout are not heard: twice as many each
@@ -66,11 +66,11 @@ class CompiledRun:
             if self._progress is not None:
                 self._progress(self.state["rays_left"])
         if status == STARVED:
-            raise ModelError(starved(self.state))
+            self.state.starve()
 
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
-        records = ("logs", "record_tests", "record_counters")
+        records = ("logs", "record_tests", "record_counters", "record_ends", "measures")
         talks = self.state["idle"] != 0  # PEs that have nothing to do may have something to say
         if talks or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
@@ -134,6 +134,8 @@ def _arrive(s: Run, message: int, now_ps: int) -> None:
     s.arrivals += 1
     if s.logs:
         note_arrival(s, message)
+    if s.measures:
+        note_arrival_of(s, message)
     m = messages(s)[message]
     if is_get(s, m):
         send_back(s, message)

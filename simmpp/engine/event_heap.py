@@ -47,7 +47,7 @@ def _set(event: Row, time_ps: int, rank: int, number: int, message: int) -> None
 @kernel
 def heap_lacks_room(s: Run) -> bool:
     """Might one more step not find room, as there are so many instants that come to nothing?"""
-    return s.heap_n < s.messages_n + s.processors + 1 + s.n_stale
+    return s.heap_n < s.messages_n + s.processes_n + 1 + s.n_stale
 
 
 @kernel

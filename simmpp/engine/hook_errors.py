@@ -21,7 +21,7 @@ from simmpp.engine.state import State
 from simmpp.policy.hooks import address_of
 from simmpp.policy.mistakes import file_of, line_in
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.plain import plain_view
+from simmpp.policy.plain import plain_view, uncompiled
 from simmpp.policy.policy import HOOKS, Hook
 from simmpp.policy.view import View
 
@@ -86,7 +86,7 @@ def _explained(
     for hook in policy.rules.hooks.values():
         for view in views:
             try:
-                hook(plain_view(view, names))
+                uncompiled(hook)(plain_view(view, names))
             except Exception as again:
                 return _said(again, hook, line_in(hook.__code__.co_filename, again))
     return _said(error, next(iter(policy.rules.hooks.values())), None)

@@ -20,6 +20,8 @@ from simmpp.engine.arrays.records import (
     SAMPLED,
     SERVICE,
 )
+from simmpp.engine.bounds import room_arrays
+from simmpp.engine.capacity import Needs
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -55,6 +57,7 @@ def new_state(
     placement: Placement,
     parameters: PolicyParameters,
     *,
+    needs: Needs | None = None,
     ready_order: str,
     seed: int = 0,
     recording: Recording = NOTHING,
@@ -66,6 +69,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays |= room_arrays(placement, machine, needs)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
     arrays["policy_views"] = views = _policy_views(workload, placement, parameters)
@@ -74,6 +78,7 @@ def new_state(
         "record_tests": recording.tests,
         "record_counters": recording.counters,
         "record_hops": recording.hops,
+        "record_ends": recording.ends,
         "bin_width": first_width(_least_ps(workload, machine)),
         "logs": recording.sink is not None,
     }
@@ -101,7 +106,7 @@ def _sizes(
 ) -> Sizes:
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
-    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 1
+    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
     known = nb * placement.island
     pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
@@ -115,8 +120,10 @@ def _sizes(
         messages=min(sent, n_objects + 2 * nb + 1),
         talks=parameters.rules.talks,
         tested=workload.n_tests if recording.tests else 0,
+        ended=n_rays if recording.ends else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
+        bounded=placement.capacity is not None and placement.capacity.has_credits,
     )
 
 
@@ -175,12 +182,16 @@ def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -
 
 
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
+    bounds = placement.capacity
     return {
         "processors": machine.processors,
         "island": placement.island,
         "n_objects": workload.n_objects,
         "contends": machine.contention == LINKS,
         "service": SERVICE[machine.service],
+        "measures": bounds is not None,
+        "bounded": bounds is not None and bounds.has_credits,
+        "escapes": bounds is not None and bounds.has_escape,
         "keeps": placement.transient > 0 or placement.transient_bytes > 0,
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,

@@ -20,6 +20,7 @@ from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
+    from simmpp.engine.memory_use import MemoryUse
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
 
@@ -98,6 +99,8 @@ class Result(Displayed):
     """Further ones that were not: too many, or to nobody."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
+    memory: MemoryUse | None = None
+    """What became of the memory of PEs, where it has a capacity."""
     log: NDArray[np.void] | None = None
     """Event log, if asked for (see ``engine.log``)."""
     counters: Counters | None = None
@@ -105,6 +108,8 @@ class Result(Displayed):
     ray_hops: NDArray[np.int32] | None = None
     """(n,) int32, with ``Recording.hops``: links crossed for each ray, by itself in a message or by
     the requests and objects that it waited for. A view of the run's state, 16 bytes per ray."""
+    ray_ends_ps: NDArray[np.int64] | None = None
+    """(n,) int64, with ``Recording.ends``: when each ray was finished."""
     tested_rays: NDArray[np.int32] | None = None
     """(tests,) int32, with ``Recording.tests``: the ray of each test in the order performed."""
     tested_objects: NDArray[np.int32] | None = None
@@ -177,10 +182,20 @@ class Result(Displayed):
 
 
 def concluded(
-    state: State, arrivals: int, policy: str, engine: str, log: NDArray[np.void] | None
+    state: State,
+    arrivals: int,
+    policy: str,
+    engine: str,
+    log: NDArray[np.void] | None,
+    use: MemoryUse | None,
 ) -> Result:
-    """Clip the accounts at the makespan and check that the machine lost nothing."""
+    """Clip the accounts at the makespan and check that the machine lost nothing.
+
+    A run that could not be brought to its end has no makespan: the time is that of its last event.
+    """
     makespan_ps = state["last_ray_ps"]
+    if state.infeasible:
+        makespan_ps = max(makespan_ps, int(state.pes["busy_until_ps"].max()))
     overrun_ps = np.maximum(state.pes["busy_until_ps"] - makespan_ps, 0)
     communication_ps = state.pes["communication_ps"] - overrun_ps
     late_ps = np.maximum(state.pes["served_until_ps"] - makespan_ps, 0)
@@ -213,9 +228,11 @@ def concluded(
         user_messages=user_messages,
         user_dropped=state["user_dropped"],
         rules_never_fired=_never_fired(state, parts_by_kind),
+        memory=use,
         log=log,
         counters=state.counters() if state["record_counters"] else None,
         ray_hops=state.arrays["rays"]["hops"] if state["record_hops"] else None,
+        ray_ends_ps=state.arrays["ends_ps"] if state["record_ends"] else None,
         tested_rays=state.arrays["tested_rays"] if state["record_tests"] else None,
         tested_objects=state.arrays["tested_objects"] if state["record_tests"] else None,
     )

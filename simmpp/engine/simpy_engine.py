@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from simpy.events import Event
 
 from simmpp.common.compiled import entry_point, njit
-from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import (
     BEGIN,
     BY_NIC,
@@ -31,11 +30,12 @@ from simmpp.engine.arrays.records import (
 )
 from simmpp.engine.arrays.views import messages
 from simmpp.engine.network import move_head
+from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.gets import is_get, send_back
 from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
-from simmpp.engine.state import State, starved
+from simmpp.engine.state import State
 
 _HEAD_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     list(MESSAGE.names or ()).index(name)
@@ -72,7 +72,11 @@ def _move_head(runs: NDArray[np.void], message: int) -> int:
 
 @njit
 def _note_arrival(runs: NDArray[np.void], message: int) -> None:
-    note_arrival(runs[0], message)
+    s = runs[0]
+    if s.logs:
+        note_arrival(s, message)
+    if s.measures:
+        note_arrival_of(s, message)
 
 
 class SimpyRun:
@@ -100,6 +104,7 @@ class SimpyRun:
         self._end = _happened(self._environment)
         self._ending = False
         self._logs = bool(state["logs"])
+        self._notes = self._logs or bool(state["measures"])
         self._contends = bool(state["contends"])
 
     def run(self) -> None:
@@ -120,7 +125,7 @@ class SimpyRun:
             if self._progress is not None and events % _PROGRESS_EVERY == 0:
                 self._progress(self.state["rays_left"])
         if not self._ending:
-            raise ModelError(starved(self.state))
+            self.state.starve()
 
     def _processing_element(self, me: int) -> Generator[Event, None, None]:
         """One PE: a step at each of its instants, asleep between them."""
@@ -243,6 +248,7 @@ class SimpyRun:
         self.arrivals += 1
         if self._logs:
             self.state.ensure_room(self._environment.now)
+        if self._notes:
             self._note_arrival(self.state.runs, row)
         if self._by_nic and self._send_back(self.state.runs, row):
             self._travel(row)

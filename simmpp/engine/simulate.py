@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from simmpp.common.errors import ModelError
 from simmpp.common.validate import require_kind, require_word
+from simmpp.engine.bounds import memory_use
+from simmpp.engine.capacity import require_room
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.hook_errors import told_of_hooks
@@ -14,6 +17,7 @@ from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
 from simmpp.engine.simpy_engine import SimpyRun
+from simmpp.engine.state import starved
 from simmpp.machine.limits import beyond_the_clock, check_counters
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -60,11 +64,13 @@ def simulate(
     require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
+    needs = require_room(workload, machine, placement, policy)
     state = new_state(
         workload,
         machine,
         placement,
         policy,
+        needs=needs,
         ready_order=ready_order,
         seed=seed,
         recording=recording,
@@ -74,11 +80,16 @@ def simulate(
     try:
         with told_of_hooks(policy, state):
             run.run()
+    except RuntimeError as error:
+        if error.args != ("no progress",):
+            raise
+        raise ModelError(f"no test was made for too many activities: {starved(state)}") from None
     except OverflowError:
         raise beyond_the_clock() from None
     state.close_log()
     rows = collector.rows() if record.log is True else None
-    return concluded(state, run.arrivals, policy.title, engine, rows)
+    use = memory_use(state, placement.capacity, needs)
+    return concluded(state, run.arrivals, policy.title, engine, rows, use)
 
 
 def _check(

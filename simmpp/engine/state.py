@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import entry_point, kernel, njit
+from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.hashtable import USED
 from simmpp.engine.arrays.layout import ARRAYS, COUNTERS, PARAMETERS, REPORT, RUN
 from simmpp.engine.arrays.records import BINS, NONE, SIZES, Run
@@ -30,6 +31,8 @@ class State:
     def __init__(self, arrays: Arrays, parameters: dict[str, int], log: Sink | None = None) -> None:
         self.log = log
         """What gets the event log, if there is one."""
+        self.infeasible = ""
+        """Why the run could not be brought to its end."""
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
@@ -88,6 +91,15 @@ class State:
             needed += 2 * self["n_stale"] + len(self.pes)
         if len(self.arrays["heap"]) < needed:
             self._grow("heap", needed)
+
+    def starve(self) -> None:
+        """Rays are left and nothing is scheduled: a result where no PE may escape.
+
+        Raises ModelError elsewhere: a bug, or a policy that starves.
+        """
+        if not self["bounded"] or self["escapes"]:
+            raise ModelError(starved(self))
+        self.infeasible = stuck(self)
 
     def close_log(self) -> None:
         """Hand on what is left of the event log."""
@@ -171,3 +183,10 @@ def starved(state: State) -> str:
         f"{state['rays_left']} rays are left and nothing is scheduled "
         f"after {state['tests']} tests: {'; '.join(holders)}"
     )
+
+
+def stuck(state: State) -> str:
+    """What to say when no PE can go on, and none may escape."""
+    waiting = state.pes["load"] - (state.pes["pixel_end"] - state.pes["pixel"])
+    pe = int(waiting.argmax())
+    return f"PE {pe} is stuck with {waiting[pe]} rays, of {state['rays_left']} that are left"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from simmpp.engine import result
+from simmpp.engine import memory_use, result
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
@@ -13,10 +13,13 @@ METHOD = "method"
 """A key as well where a sweep changes it."""
 NUMBERS = result.COLUMNS
 """Integers of a run; empty where the method does not know."""
+BOUNDED = "bounded"
+"""The memory of PEs has a capacity."""
 BY_USE = {
     "packs": result.PACKED_COLUMNS,
     "talks": result.USER_COLUMNS,
     "threads": result.SERVICE_COLUMNS,
+    BOUNDED: memory_use.COLUMNS,
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""

@@ -42,8 +42,9 @@ def place(
         replica_objects=objects,
         transient=kept_count(memory, deal, len(objects)),
         pixel_pes=starts_on,
-        transient_bytes=memory.fetch or 0,
+        transient_bytes=memory.kept_bytes,
         islands=rules.islands,
+        capacity=memory.bounds,
     )
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
-    PlainSerializer,
     SerializerFunctionWrapHandler,
     model_serializer,
     model_validator,
@@ -17,10 +16,21 @@ from pydantic import (
 
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
-from simmpp.common.quantities import SHARE_OF_TEXT, Share, Size
+from simmpp.common.quantities import Share, Size
 from simmpp.common.strict import Expect, declared, integer, mistake, parsed_by
-from simmpp.common.units import share, shown
-from simmpp.common.validate import MOST_COUNT, require_whole, whole
+from simmpp.common.units import shown
+from simmpp.common.validate import MOST_COUNT, require_whole
+from simmpp.placement.rooms import (
+    AS_FRACTION,
+    OF_A_CAPACITY,
+    Capacity,
+    CapacityBytes,
+    Escape,
+    Flow,
+    Room,
+    Transient,
+    Wish,
+)
 
 # --- cutting a row of things into near-equal parts ---
 
@@ -48,7 +58,7 @@ class Cells:
         require_whole("cells", self.cells, 1, MOST_COUNT)
 
 
-# --- what users write for pixels and for transient memory ---
+# --- what users write for pixels ---
 
 _PIXELS = f"{', '.join(get_args(Pixels))} or {{cells: 8}}"
 _CELLS_SCHEMA = {
@@ -58,11 +68,6 @@ _CELLS_SCHEMA = {
     "additionalProperties": False,
 }
 _PIXELS_SCHEMA = {"anyOf": [{"enum": list(get_args(Pixels))}, _CELLS_SCHEMA]}
-AS_FRACTION: Literal["x"] = "x"
-"""As many objects as are resident."""
-_TRANSIENT = "a number of objects, a share of them such as 10% (100% at most), or x"
-_COUNT = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
-_TRANSIENT_SCHEMA = {"anyOf": [_COUNT, SHARE_OF_TEXT, {"const": AS_FRACTION}]}
 
 
 def _pixels(value: object) -> object:
@@ -74,33 +79,7 @@ def _pixels(value: object) -> object:
     raise ConfigError(f"value {shown(value)}: expected {_PIXELS}")
 
 
-def _transient(value: object) -> Fraction | int | str:
-    """A share (a Fraction, or a text with % or /), a number of objects, or ``x``.
-
-    1 is one object, and 0.1 nothing: what has neither % nor / is no share.
-    """
-    if isinstance(value, str) and value == AS_FRACTION:
-        return AS_FRACTION
-    try:
-        if isinstance(value, Fraction) or (isinstance(value, str) and set("%/") & set(value)):
-            return share(value)
-        return whole(value, 0, MOST_COUNT)
-    except ConfigError:
-        raise ConfigError(f"value {shown(value)}: expected {_TRANSIENT}") from None
-
-
-def _transient_text(value: Fraction | int | str) -> int | str:
-    """As it would be written; 1/1 is everything, 1 one object."""
-    return f"{value.numerator}/{value.denominator}" if isinstance(value, Fraction) else value
-
-
 PixelRule = Annotated[Pixels | Cells, parsed_by(_pixels), Expect(_PIXELS, _PIXELS_SCHEMA)]
-Transient = Annotated[
-    Fraction | int | Literal["x"],
-    parsed_by(_transient),
-    Expect(_TRANSIENT, _TRANSIENT_SCHEMA, "objects or %"),
-    PlainSerializer(_transient_text),
-]
 
 
 @declared
@@ -117,13 +96,24 @@ class Memory:
     transient: Transient = 0
     """Fetched objects kept besides the resident ones (least recently used leaves): a number; a
     share of all N, rounded like the fraction's; `x`, the fraction's share (with bytes, as many as
-    are resident in the mean). The replicated scene fetches none."""
-
-    fetch: Size | None = None
-    """The other way to say it: room for fetched objects, in place of a number of them."""
+    are resident in the mean); or room for them in bytes. The replicated scene fetches none."""
     hot: Share = Fraction(0)
     """Share of the objects, those most used for their size in a coarse pre-pass, that come first on
     every PE; they count as residents."""
+    capacity: CapacityBytes = None
+    """All memory of one PE: objects, rays, buffers. `least` is the least with which a policy runs;
+    `none`: as much as it takes. With one, pixels are started as there is room for their rays."""
+    flow: Flow = "credits"
+    """With a capacity: `credits`, a PE sends rays only where there is room for them; `none`, the
+    capacity is only compared with what is held."""
+    escape: Escape = "fetch"
+    """With credits, what a PE does that can't go on: it fetches the object of its oldest ray into
+    room of its own; `none`: it waits, perhaps for ever."""
+    buffers: Wish = Fraction(1, 4)
+    """With credits, room for rays that arrive: a share of the capacity that permanent parts leave,
+    or a size for all senders together."""
+    fetch: Wish = Fraction(1, 4)
+    """Likewise, room for objects that are fetched: asked for, in use, or kept."""
 
     if TYPE_CHECKING:  # arguments take more than fields hold
 
@@ -132,15 +122,19 @@ class Memory:
             fraction: Fraction | float | str = ...,
             bytes: int | str | None = ...,
             residents: Residents = ...,
-            transient: Fraction | int | str = ...,
-            fetch: int | str | None = ...,
+            transient: Fraction | int | str | Room = ...,
             hot: Fraction | float | str = ...,
+            capacity: int | str | None = ...,
+            flow: Flow = ...,
+            escape: Escape = ...,
+            buffers: Fraction | int | str = ...,
+            fetch: Fraction | int | str = ...,
         ) -> None: ...
 
     @property
     def kept(self) -> Fraction | int | Literal["x"]:
         """The transient share or number of objects; ``x`` only where no fraction says which."""
-        if self.fetch is not None:
+        if isinstance(self.transient, Room):
             return 0
         by_fraction = self.transient == AS_FRACTION and self.bytes is None
         return self.fraction if by_fraction else self.transient
@@ -151,19 +145,38 @@ class Memory:
         """Of what users write; Python's ``replace`` always passes both."""
         if isinstance(given, dict) and "fraction" in given and given.get("bytes") is not None:
             raise mistake("expected fraction or bytes, got both")
-        if isinstance(given, dict) and "transient" in given and given.get("fetch") is not None:
-            raise mistake("expected transient or fetch, got both")
         return given
+
+    @model_validator(mode="after")
+    def _leaves_room_for_rays(self) -> Memory:
+        wishes = {"buffers": self.buffers, "fetch": self.fetch}
+        shares = {key: wish for key, wish in wishes.items() if isinstance(wish, Fraction)}
+        if sum(shares.values()) >= 1:
+            said = " and ".join(f"{key} {float(wish):.0%}" for key, wish in shares.items())
+            raise mistake(f"{said} leave no room for rays: expected less than 100% together")
+        return self
+
+    @property
+    def kept_bytes(self) -> int:
+        """Room for what is kept of what was fetched; 0 where a number of objects says it."""
+        return self.transient.bytes if isinstance(self.transient, Room) else 0
+
+    @property
+    def bounds(self) -> Capacity | None:
+        """A PE's whole memory, if it ends."""
+        if self.capacity is None:
+            return None
+        return Capacity(self.capacity, self.flow, self.escape, self.buffers, self.fetch)
 
     @model_serializer(mode="wrap")
     def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         plain: dict[str, Any] = handler(self)
         if self.bytes is not None:
             del plain["fraction"]
-        if self.fetch is not None:
-            del plain["transient"]
         if not self.hot:
             del plain["hot"]
+        if self.capacity is None:
+            plain = {key: value for key, value in plain.items() if key not in OF_A_CAPACITY}
         return plain
 
 
@@ -222,6 +235,8 @@ class Placement:
     """Bytes of fetched objects that it holds, where a size says so; else 0."""
     islands: int = 1
     """Equal parts of the machine that own the whole scene each."""
+    capacity: Capacity | None = None
+    """All memory of one PE; None: as much as it takes."""
 
     @property
     def island(self) -> int:

@@ -105,8 +105,7 @@ class View:
     """What fetching these from their owners would cost this PE, each request and object a message
     of its own."""
     fetch_flight_ps: int
-    """Time in between, one after the other: flights without contention, and what answering takes.
-    """
+    """Time in between, one after the other: flights without contention, what answering takes."""
     words: MutableSequence[int]
     """(4,) of a message of the policy's own: ``heard`` those that came, ``idle`` 0; for the hook to
     write those that it sends."""

@@ -37,8 +37,8 @@ def mean_flight(constants: Mapping[str, Any]) -> Flight:
     else:
         hops = _hops_in_torus(constants["shape"])
     latency_ps = constants["latency_ps"] + round(hops * constants["hop_latency_ps"])
-    startups_ps = (constants[name] for name in STARTUPS)
-    return Flight(*startups_ps, latency_ps, min(filter(None, rates), default=0))
+    send_ps, receive_ps = (constants[name] for name in STARTUPS)
+    return Flight(send_ps, receive_ps, latency_ps, min(filter(None, rates), default=0))
 
 
 def _of_levels(
@@ -53,9 +53,9 @@ def _of_levels(
         means["s_per_byte"] += share / rate if rate else 0.0
         for name in STARTUPS:
             means[name] += share * level.get(name, constants[name])
-    startups_ps = (round(means[name]) for name in STARTUPS)
+    send_ps, receive_ps = (round(means[name]) for name in STARTUPS)
     rate = round(1 / means["s_per_byte"]) if means["s_per_byte"] else 0
-    return Flight(*startups_ps, round(means["latency_ps"]), rate)
+    return Flight(send_ps, receive_ps, round(means["latency_ps"]), rate)
 
 
 def shares_of_pairs(nb: int, blocks: Sequence[int]) -> list[float]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
-from simmpp.methods.columns import FURTHER, KEYS, METHOD, NUMBERS, result_columns
+from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns
 from simmpp.methods.simulation import integers
 from simmpp.methods.table import METHODS
 from simmpp.run.point import Point, PolicyRun
@@ -67,6 +67,8 @@ def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
 def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     """Write ``results.csv`` of the policies that were run at one point."""
     uses = {use for run in runs for use in run.parameters.uses} | {*point.machine.uses}
+    if point.config.memory.capacity is not None:
+        uses.add(BOUNDED)
     columns = result_columns(uses=uses)
     write_csv(in_order(row(point, run) for run in runs), columns, path)
 

@@ -124,6 +124,7 @@ class View:
     lights: Sequence[LightSettings] | None = None
     up: str | None = None
     """The axis that points upwards, one of AXES."""
+    background: Vector | None = None
 
 
 def viewed(scene: Scene, view: View) -> Scene:
@@ -135,6 +136,8 @@ def viewed(scene: Scene, view: View) -> Scene:
     if view.lights is not None:
         lights = tuple(Light(light.position, light.colour) for light in view.lights)
         origin = replace(origin, lights=f"{counted(len(lights), 'light')} as set")
+    if view.background is not None:
+        scene = replace(scene, background=view.background)
     said, camera = _camera(scene, view)
     if not camera.aims and camera != scene.camera:
         eye, at, up = (shown([*map(float, point)]) for point in (camera.eye, camera.at, camera.up))

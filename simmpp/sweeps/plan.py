@@ -17,7 +17,7 @@ from simmpp.common.places import misplaced
 from simmpp.config.axes import POINTS, SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
-from simmpp.methods.columns import KEYS, METHOD, result_columns
+from simmpp.methods.columns import BOUNDED, KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import FAILED, FINISHED, SIMULATIONS, record, recorded
@@ -62,6 +62,8 @@ class Plan:
     def result_columns(self) -> tuple[str, ...]:
         """Columns of ``results.csv``."""
         uses = {use for planned in self.points for use in planned.point.policy.uses}
+        if any(planned.point.config.memory.capacity is not None for planned in self.points):
+            uses.add(BOUNDED)
         configs = (planned.point.config for planned in self.points)
         uses |= {use for c in configs for use in c.machine_for(c.processors).uses}
         return result_columns(self.further, uses)

@@ -57,6 +57,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     machine = constants_of(config)
     # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
+    held |= {"kept": memory.kept_bytes, "bounds": config.memory.bounds}
     place = _hash(digest, machine, held, asdict(rules), seed)
     return Task(
         key=_hash(place, decides(policy), settings.ready_order, settings.method, settings.engine),

@@ -17,9 +17,9 @@ from simmpp.scene.cut import OBJECTS, cut_named
 from simmpp.scene.mesh import load_mesh, load_parts
 from simmpp.scene.nff import load_nff
 from simmpp.scene.parts import Parts
-from simmpp.scene.scene import Scene
+from simmpp.scene.scene import Scene, Vector
 from simmpp.scene.spd.generators import GENERATORS, find_generator, known_names, load_spd
-from simmpp.scene.view import AXES, CameraKey, Lights, View, viewed
+from simmpp.scene.view import AXES, CameraKey, Lights, View, three, viewed
 from simmpp.workload.ray_source import FileSource, RaySource, SceneSource
 
 SIZE = "an integer from 1 to what the scene can have"
@@ -59,7 +59,7 @@ SOURCES = {
     "parts": Kind(load_parts, ("objects", "up"), is_file=False),
     "workload": Kind(),
 }
-VIEW = ("camera", "lights", "up")
+VIEW = ("camera", "lights", "up", "background")
 """Keys that go with all that is traced."""
 FILES = [key for key, kind in SOURCES.items() if kind.is_file]
 
@@ -111,6 +111,8 @@ class SceneSettings(Strict):
     up: Annotated[str, *one_of(*AXES)] | None = None
     """The axis that is upwards in the picture; when not given, y in meshes (z in STL) and the
     camera's own where the file has one."""
+    background: Annotated[Vector, *three("[0, 0, 0]", 0.0)] | None = None
+    """Red, green and blue of what rays meet that hit nothing; traced paths are lit by it."""
     workload: Text | None = None
     """Rays of another renderer, in Parquet or npz, in place of a scene."""
 
@@ -168,5 +170,5 @@ class SceneSettings(Strict):
             return FileSource(value)
         further = {name: getattr(self, name) for name in kind.further}
         load = partial(load, value, **{k: v for k, v in further.items() if v is not None})
-        view = View(self.camera, self.lights, self.up)
+        view = View(self.camera, self.lights, self.up, self.background)
         return SceneSource(load if view == View() else partial(_viewed, load, view))

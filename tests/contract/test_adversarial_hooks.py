@@ -11,12 +11,13 @@ from dataclasses import asdict, replace
 from typing import get_args
 
 import pytest
-from builders import Case, random_case
+from builders import Case, random_case, with_capacity
 from implementations import run
 
 from simmpp.common.errors import ModelError
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.messages import OBJECT
+from simmpp.placement.rooms import LEAST
 from simmpp.policy.parameters import POLICIES
 from simmpp.policy.policy import Candidates, Hook, Policy
 from simmpp.policy.view import View
@@ -149,6 +150,22 @@ def test_every_integer_is_the_oracles(
         for name in expected:
             assert got[name] == expected[name], f"seed {seed}: {name} under {case.policy}"
         assert got["rays_sent"] + got["parts_by_kind"][OBJECT] <= got["tests"]
+
+
+@pytest.mark.parametrize(("send", "ask"), [*PAIRS[::3], PAIRS[-1], (to_the_more_loaded, no)])
+@pytest.mark.parametrize("candidates", get_args(Candidates))
+def test_in_the_least_memory_all_of_them_end(
+    send: Hook, ask: Hook, candidates: Candidates, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With packing, refresh and evictions, and as the oracle says."""
+    monkeypatch.setitem(POLICIES, "adversary", adversary(send, ask, 3, "greed", candidates))
+    for seed in range(CASES // 3):
+        least = {"bytes": LEAST} if seed % 2 else {}
+        case = with_capacity(adversarial_case(seed), seed, flow="credits", **least)
+        expected, got = asdict(run("oracle", case)), asdict(run("compiled", case))
+        for name in expected:
+            assert got[name] == expected[name], f"seed {seed}: {name} under {case.policy}"
+        assert got["rays"] == case.workload.n_rays
 
 
 @pytest.mark.parametrize("engine", ENGINES)

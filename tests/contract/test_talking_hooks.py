@@ -11,12 +11,13 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
-from builders import Case, random_case
+from builders import Case, random_case, served
 from implementations import result_of, run
 
 from simmpp.common.errors import ModelError
 from simmpp.engine.record.log import EVENT_KINDS
 from simmpp.engine.simulate import ENGINES
+from simmpp.machine.machine import SERVICES
 from simmpp.machine.messages import USER
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Hook, Policy
@@ -98,7 +99,7 @@ PAIRS: list[tuple[Hook | None, Hook | None]] = [
 
 
 def talking_case(seed: int, heard: Hook | None, idle: Hook | None) -> Case:
-    case = random_case(seed)
+    case = served(random_case(seed), SERVICES[seed % 3], seed)
     send = of_those_who_spoke if heard is by_all_that_it_hears else None
     own = Policy(
         "talks",

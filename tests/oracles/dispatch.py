@@ -31,15 +31,22 @@ class Dispatch(Views):
             pe.clock = self.send(pe.clock, pe, destination, parts)
         if self.policy.load_info == "piggyback" and pe.refresh_allowed:
             self.refresh(pe)
+        for other in self.due_credits(pe):
+            pe.clock = self.send(pe.clock, pe, other, [Part(LOAD, 0)])
+            self.credit_messages.append(self.ledger.sent[-1])
         return pe.clock
 
     def decisions(self, pe: PE) -> Iterator[tuple[int, Part]]:
         """To whom what goes: rays, then requests; each is decided when it is drawn."""
-        nothing_else = not pe.ready and not pe.inbox
+        nothing_else = self.nothing_else(pe)
         if self.rules.send:
             yield from self.rays_to_send(pe, nothing_else, self.rules.send)
         if self.rules.ask:
             yield from self.requests(pe, nothing_else, self.rules.ask)
+        stuck_for = self.escape(pe)
+        if stuck_for is not None:
+            request = Part(REQUEST, self.machine.request_bytes, stuck_for, escape=True)
+            yield self.owner_of(pe.number, stuck_for), request
 
     def packed(self, pe: PE, decided: list[tuple[int, Part]]) -> Iterator[Parcel]:
         """Messages of what has been decided, those that may share one together."""
@@ -56,26 +63,27 @@ class Dispatch(Views):
                 if parts:
                     yield other, parts
 
-    def others(self, pe: PE) -> list[int]:
-        """All other PEs of the island, beginning with the next one."""
-        island = self.island_of(pe.number)
-        at = island.index(pe.number)
-        return island[at + 1 :] + island[:at]
-
-    def is_asked(self, waiting: int, count: int | str, nothing_else: bool) -> bool:
-        """Do enough rays wait, or is nothing else to do?"""
+    def number(self, count: int | str) -> int:
+        """A number, or that of the policy so called."""
         if isinstance(count, str):
             own = dict(zip(self.rules.parameters, self.policy.numbers, strict=True))
             known = numbers(self.policy, self.workload.n_primaries, self.nb)
-            count = (known | own)[count]
-        return waiting > 0 and (nothing_else or waiting >= count)
+            return (known | own)[count]
+        return count
+
+    def is_asked(self, waiting: int, count: int | str, nothing_else: bool) -> bool:
+        """Do enough rays wait, or is nothing else to do?"""
+        return waiting > 0 and (nothing_else or waiting >= self.number(count))
+
+    def is_asked_to_send(self, pe: PE, other: int, nothing_else: bool) -> bool:
+        """Do enough rays wait that may go to a PE?"""
+        batch = self.enough_for(pe, other, self.number(self.rules.batch))
+        return self.is_asked(self.n_sendable(pe, other), batch, nothing_else)
 
     def candidates(self, pe: PE, nothing_else: bool) -> list[int]:
         """PEs that send is asked about, in this order."""
         asked = [
-            other
-            for other in self.others(pe)
-            if self.is_asked(self.n_sendable(pe, other), self.rules.batch, nothing_else)
+            other for other in self.others(pe) if self.is_asked_to_send(pe, other, nothing_else)
         ]
         if self.rules.candidates == "owner":
             return asked
@@ -109,13 +117,18 @@ class Dispatch(Views):
         for owner in self.candidates(pe, nothing_else):
             groups, rays = self.sendable(pe, owner), list[int]()
             waiting = sum(map(len, groups))
-            if not self.is_asked(waiting, self.rules.batch, nothing_else):
+            if not self.is_asked_to_send(pe, owner, nothing_else):
                 continue
             enough = send(self.view_of_destination(pe, owner, groups, nothing_else, draws))
-            while groups and len(rays) < enough:
+            most = self.rays_allowed(pe, owner, waiting)
+            while groups and len(rays) < min(enough, most):
                 rays += groups.pop(0)
+            if min(len(rays), most) < enough and (groups or len(rays) > most):
+                pe.refused.add("send")
+            rays = rays[:most]
             if rays:
                 pe.unfile(rays)
+                self.spend(pe, owner, len(rays))
                 pe.in_flight_to[owner] += len(rays)
                 yield owner, Part(RAYS, len(rays) * self.machine.ray_bytes, rays=tuple(rays))
 
@@ -138,6 +151,9 @@ class Dispatch(Views):
             chosen = dict(enumerate(self.island_of(pe.number), 2)).get(int(answer))
             if chosen is None or obj not in self.pes[chosen].resident:
                 chosen = self.owner_of(pe.number, obj)
+            if answer > 0 and not self.make_room(pe, obj):
+                pe.refused.add("ask")
+                continue
             for _ in range(0 if answer <= 0 else 1 if self.policy.merge_requests else unasked):
                 yield chosen, Part(REQUEST, self.machine.request_bytes, obj)
                 pe.in_flight[obj] += 1

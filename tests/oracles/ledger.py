@@ -82,6 +82,10 @@ class Outcome:
     """(ray, object) in the order performed: by the beginnings of the computes."""
     ray_hops: list[int]
     """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
+    ray_ends: list[int]
+    """When each ray was finished."""
+    memory: dict[str, int] = field(default_factory=dict)
+    """What is written of a capacity, by column."""
 
 
 @dataclass
@@ -101,6 +105,7 @@ class Ledger:
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
     ray_hops: list[int] = field(default_factory=list)
+    ray_ends: list[int] = field(default_factory=list)
     dropped: int = 0
     """Messages of the policy's own that were not sent."""
     held_rays: list[int] = field(default_factory=list)
@@ -128,7 +133,7 @@ class Ledger:
 
     def did(self, pe: PE, begin: int, what: str, end: int, m: Message | None, **more: int) -> None:
         """Write down what a PE did."""
-        state = {"load": pe.load, "ready": len(pe.ready)}
+        state = {"load": pe.load, "ready": pe.n_ready}
         if what in ("serve", "answer"):  # the PE may be in an activity
             state = {"load": -1, "ready": -1}
         if m is not None:
@@ -137,6 +142,11 @@ class Ledger:
             state |= {"rays": m.n_rays}
             state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
+
+    def did_unpack(self, pe: PE, begin: int, end: int, rays: int, n_bytes: int) -> None:
+        """Write down that rays were taken out of their shares."""
+        of = {"rays": rays, "payload_bytes": n_bytes, "kind": RAYS}
+        self.did(pe, begin, "receive", end, None, **of)
 
     def clipped(self, end: int) -> list[Slice]:
         """What was done until the end of the run, by PE and time."""
@@ -192,4 +202,5 @@ class Ledger:
             slices=self.clipped(end),
             tested=self.tested,
             ray_hops=self.ray_hops,
+            ray_ends=self.ray_ends,
         )

@@ -45,8 +45,13 @@ class Simulation(Serving):
             (time, *_), what, whom = heapq.heappop(self.queue)
             if self.rays_left == 0 and time >= self.ledger.makespan_ps:
                 return
+            done = len(self.ledger.tested) + len(self.ledger.finished_ps)
             handlers[what](time, whom)
-        if self.rays_left:
+            if what != "take":
+                self.note_event(len(self.ledger.tested) + len(self.ledger.finished_ps) > done)
+        if self.rays_left and self.credits and not self.has_escape:
+            self.infeasible = True
+        elif self.rays_left:
             raise AssertionError(f"{self.rays_left} rays left and nothing scheduled")
 
     def begin(self, time: int, pe: PE) -> None:
@@ -58,7 +63,10 @@ class Simulation(Serving):
             message = pe.inbox.popleft()
             work_end = self.receive(time, pe, message)
             self.ledger.open[pe.number] = (time, f"receive {MESSAGE_KINDS[message.kind]}", 0)
-        elif pe.ready:
+        elif self.can_unpack(pe):
+            work_end = self.unpack(time, pe)
+            self.ledger.open[pe.number] = (time, "receive rays", 0)
+        elif self.has_ready(pe):
             tests_before = len(self.ledger.tested)
             work_end = self.compute(time, pe)
             n_tests = len(self.ledger.tested) - tests_before
@@ -67,6 +75,7 @@ class Simulation(Serving):
             self.fall_asleep(time, pe)
             return
         self.sample_bytes(pe)
+        self.note_memory(pe)
         self.schedule(work_end, pe, "dispatch")
 
     def receive(self, time: int, pe: PE, message: Message) -> int:
@@ -83,14 +92,23 @@ class Simulation(Serving):
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
             if part.kind == RAYS:
-                pe.make_ready(list(part.rays), self.ready_order)
+                if not self.credits:
+                    pe.make_ready(list(part.rays), self.ready_order)
                 self.cross(part.rays, far)
+            elif part.kind == OBJECT and part.escape:
+                assert pe.stuck is not None
+                self.cross([pe.stuck], 2 * far)
+                pe.granted.add(pe.stuck)
+                pe.make_ready([pe.stuck], self.ready_order)
             elif part.kind == OBJECT:
                 self.cross(self.release(pe, part.obj), 2 * far)
         self.ledger.did(pe, time, "receive", clock, message)
-        wanted = [part.obj for part in message.parts if part.kind == REQUEST]
+        wanted = [part for part in message.parts if part.kind == REQUEST]
         if wanted and self.machine.service == "pe":
-            answer = [Part(OBJECT, self.object_bytes[obj], obj) for obj in wanted]
+            answer = [
+                Part(OBJECT, self.object_bytes[part.obj], part.obj, escape=part.escape)
+                for part in wanted
+            ]
             clock = self.send(clock, pe, message.source, answer)
         if message.count(USER):
             clock = self.hear(clock, pe, message)
@@ -123,8 +141,7 @@ class Simulation(Serving):
         clock = self.pay("communication", pe, time, self.machine.probe_ps)
         done_before = len(self.ledger.finished_ps)
         tests_left = self.machine.quantum
-        while tests_left > 0 and pe.ready:
-            ray = pe.ready[0]
+        while tests_left > 0 and (ray := self.next_ray(pe)) is not None:
             while True:
                 itinerary, position = self.itineraries[ray], self.positions[ray]
                 if position == len(itinerary):
@@ -136,6 +153,7 @@ class Simulation(Serving):
                     pe.file(ray, obj)
                     break
                 if tests_left == 0:
+                    pe.cut = True
                     break
                 clock = self.test(clock, pe, ray, obj)
                 tests_left -= 1
@@ -152,6 +170,8 @@ class Simulation(Serving):
         self.positions[ray] += 1
         was_granted = ray in pe.granted
         pe.granted.discard(ray)
+        if pe.stuck == ray:
+            pe.stuck, was_granted = None, False
         pe.use(obj)
         if was_granted and obj in pe.transient and obj not in self.pinned(pe) and self.rules.keep:
             pe.clock = clock
@@ -173,13 +193,15 @@ class Simulation(Serving):
         """A ray is shaded and leaves its children here."""
         clock = self.pay("compute", pe, clock, self.machine.ray_ps)
         self.ledger.finished_ps.append(clock)
+        self.ledger.ray_ends[ray] = clock
         self.get_on(pe)
         self.rays_left -= 1
-        children = [c for c, parent in enumerate(self.workload.parents) if parent == ray]
+        self.alive += len(self.children[ray]) - 1
         pe.ready.remove(ray)
         pe.finished += 1
-        pe.make_ready(children, self.ready_order)
+        pe.make_ready(self.children[ray], self.ready_order)
         self.sample_rays(pe)
+        self.note_memory(pe)
         return clock
 
     def dispatch(self, time: int, pe: PE) -> None:
@@ -187,6 +209,8 @@ class Simulation(Serving):
         self.sample_loads(time)
         messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
+        self.note_stalls(time, pe)
+        self.note_memory(pe)
         if pe.number in self.ledger.open:  # not when it was woken
             self.ledger.end_activity(pe.number, clock)
         if len(self.ledger.sent) > messages_before:
@@ -208,6 +232,8 @@ def simulate(
     simulation = Simulation(workload, machine, placement, policy, ready_order, rules, seed)
     simulation.run()
     has = {"send": rules.send, "ask": rules.ask}
-    return simulation.ledger.outcome(
+    outcome = simulation.ledger.outcome(
         machine.processors, machine.header_bytes, tuple(rule for rule in has if has[rule])
     )
+    outcome.memory = simulation.memory_columns()
+    return outcome

@@ -13,6 +13,7 @@ class Serving(Talking):
     def arrive(self, time: int, message: Message) -> None:
         """A message lies in the inbox of its PE or thread, or is a get that is answered at once."""
         self.ledger.arrived(time, message)
+        self.flying = [each for each in self.flying if each is not message]
         pe = self.pes[message.destination]
         if self.machine.service == "nic" and (message.count(REQUEST) or message.asks_for_load):
             self.answer_get(time, pe, message)
@@ -27,6 +28,7 @@ class Serving(Talking):
     def put(self, time: int, pe: PE, message: Message) -> None:
         """A message lies before a PE; if it sleeps it wakes."""
         pe.inbox.append(message)
+        self.note_memory(pe)
         if pe.asleep:
             pe.asleep = False
             self.schedule(time, pe, "begin")

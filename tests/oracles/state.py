@@ -21,6 +21,16 @@ class Part(NamedTuple):
     obj: int = -1
     rays: tuple[int, ...] = ()
     words: tuple[int, ...] = ()
+    escape: bool = False
+    """A request for, or an object of, the room of an escape."""
+
+
+@dataclass
+class Lying:
+    """Rays of one message that lie in their sender's share."""
+
+    source: int
+    rays: list[int]
 
 
 @dataclass
@@ -34,6 +44,8 @@ class Message:
     load: int
     """The sender's load at packing, without the rays in this message."""
     departure: int
+    credit: int = 0
+    """Bytes of the sender's share for the receiver that are free again."""
 
     @property
     def kind(self) -> int:
@@ -112,6 +124,24 @@ class PE:
     """For the policy."""
     draws: int = 0
     """Random numbers that the policy was given."""
+    pixels: list[int] = field(default_factory=list)
+    """With credits: primary rays that are not started, and so are not among the ready ones."""
+    untouched: set[int] = field(default_factory=set)
+    """Without: primary rays among the ready ones that were never the first."""
+    cut: bool = False
+    """The front one of the ready rays was cut by the quantum."""
+    shares: list[Lying] = field(default_factory=list)
+    """Rays that have been received and did not fit, the oldest message first."""
+    credit: Counter[int] = field(default_factory=Counter)
+    """PE: bytes that may be sent to it."""
+    owed: Counter[int] = field(default_factory=Counter)
+    """PE: bytes of its share that are free again, and that it has not been told of."""
+    stuck: int | None = None
+    """A ray whose object comes, or is, in the escape room."""
+    refused: set[str] = field(default_factory=set)
+    """What credit or room has refused in this dispatch: send, receive, ask."""
+    stalled: dict[str, int] = field(default_factory=dict)
+    """What is refused: since when."""
     paid: Counter[str] = field(default_factory=Counter)
     """Account: time that all its work has taken."""
     worked: Counter[str] = field(default_factory=Counter)
@@ -134,7 +164,13 @@ class PE:
     @property
     def load(self) -> int:
         """Rays held."""
-        return len(self.ready) + len(self.waiting)
+        is_away = self.stuck is not None and self.stuck not in self.ready
+        return self.n_ready + len(self.waiting) + is_away
+
+    @property
+    def n_ready(self) -> int:
+        """Rays that wait for nothing but their turn, and room."""
+        return len(self.ready) + len(self.pixels)
 
     def next_rank(self) -> int:
         """One more than the last rank given."""

@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from oracles.costs import intersection_ps, packing, unpacking
+from oracles.memory import Bounded
 from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE
-from oracles.world import World
 from simmpp.common.randomness import key
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.policy.parameters import PolicyParameters
@@ -34,7 +34,7 @@ def random_draw(seed: int, pe: PE) -> int:
     return int(bits.random_raw()) >> 1
 
 
-class Views(World):
+class Views(Bounded):
     """The oracle's views."""
 
     def view(self, pe: PE, other: int, nothing_else: bool, draws: bool) -> SimpleNamespace:
@@ -47,7 +47,7 @@ class Views(World):
             me=island.index(pe.number),
             nb=len(island),
             load=pe.load,
-            ready=len(pe.ready),
+            ready=pe.n_ready,
             held_bytes=self.held_bytes(pe),
             nothing_else=int(nothing_else),
             initial_load=self.workload.n_primaries // self.nb,

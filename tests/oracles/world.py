@@ -36,6 +36,8 @@ class World:
     arrivals (time, 0, destination, source, send number), instants (time, 1, PE, number, 0),
     heads of messages at links and ports (time, 2, source, send number, 0)."""
     ledger: Ledger = field(default_factory=Ledger)
+    flying: list[Message] = field(default_factory=list)
+    """Messages that have been packed and have not arrived."""
 
     def __post_init__(self) -> None:
         self.nb = self.placement.processors
@@ -51,6 +53,7 @@ class World:
         self.itineraries = [objects[i:j] for i, j in pairwise(offsets)]
         self.positions = [0] * self.workload.n_rays
         self.ledger.ray_hops = [0] * self.workload.n_rays
+        self.ledger.ray_ends = [0] * self.workload.n_rays
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         self.sampled = [pe.load for pe in self.pes]
         self.sampled_at = 0
@@ -116,6 +119,8 @@ class World:
         clock = self.pay("service" if by_thread else "communication", pe, clock, cost)
         load = pe.ended_load if by_thread else pe.load
         message = Message(pe.number, destination, pe.sends, tuple(parts), load, clock)
+        message.credit, pe.owed[destination] = pe.owed[destination], 0
+        self.flying.append(message)
         pe.sends += 1
         if self.machine.service != "nic" or message.asks_for_load:
             pe.last_departure[destination] = max(pe.last_departure[destination], clock)
@@ -176,7 +181,7 @@ class World:
 
     def pinned(self, pe: PE) -> set[int]:
         """Fetched objects that are there for a test that is to be made."""
-        return {self.next_object(ray) for ray in pe.granted}
+        return {self.next_object(ray) for ray in pe.granted if ray != pe.stuck}
 
     def next_object(self, ray: int) -> int:
         """What a ray is to be tested against next."""

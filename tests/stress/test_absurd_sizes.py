@@ -12,12 +12,12 @@ from simmpp.cli import main
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import load_config
 from simmpp.sweeps.grid import MOST_POINTS, grid
-from simmpp.workload.trace import tracer
+from simmpp.workload.trace import room
 
 
 def test_pictures_that_no_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = simmpp.load_scene("tetra:1")
-    monkeypatch.setattr(tracer, "BYTES_PER_RAY", 10**12)  # as if memory were that much smaller
+    monkeypatch.setattr(room, "BYTES_PER_RAY", 10**12)  # as if memory were that much smaller
     with pytest.raises(ConfigError, match=r"tetra:1: 4096 primary rays take 4096 TB, there are"):
         simmpp.trace(scene, simmpp.Picture(resolution=64))
     with pytest.raises(ConfigError, match="resolution: value 1073741824: expected an integer from"):

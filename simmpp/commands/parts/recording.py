@@ -28,6 +28,7 @@ class Looks(NamedTuple):
     """What is to be written for people to look at."""
 
     picture: Path | None
+    until_ps: int | None
     timeline: Path | None
     window_ps: tuple[int, int] | None
     figures: Path | None

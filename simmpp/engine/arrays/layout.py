@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from simmpp.engine.arrays.records import (
     BINS,
     COPY,
+    CREDIT,
     EVENT,
     EVENT_KEY,
     MESSAGE,
@@ -37,6 +38,7 @@ from simmpp.engine.arrays.records import (
     PEER,
     PROCESS,
     RAY,
+    ROOM,
     SIZES,
     SLICE,
     TRAFFIC,
@@ -67,10 +69,14 @@ class Sizes:
     """The policy may send messages of its own."""
     tested: int
     """Tests that are recorded."""
+    ended: int
+    """Rays whose end is recorded."""
     logged: int
     """Rows of the event log that are kept before they are handed on."""
     counted: int
     """PEs whose time is counted: nb, or 0 without counters."""
+    bounded: bool = False
+    """Credits say how many rays may be sent."""
 
 
 class Array(NamedTuple):
@@ -103,6 +109,14 @@ ARRAYS = {
     "replica_offsets": Array(I8),
     "replica_objects": Array(I4),
     "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row
+    # of a capacity; empty without one
+    "rooms": Array(ROOM),  # (nb,)
+    "most_alive": Array(I4),  # (n,) rays of its tree that can be alive at once
+    "waited": Array(I8, lambda n: n.rays if n.bounded else 0),  # PE.waits when a ray began to wait
+    "credits": Array(CREDIT, lambda n: n.peers if n.bounded else 0),  # beside ``peers``
+    # Peers that are owed half of their share or more.
+    "due_ends": Array(I4, lambda n: 2 * n.nb if n.bounded else 0),
+    "due_links": Array(I4, lambda n: 2 * n.peers if n.bounded else 0),
     # of machine and policy
     "copy_costs": Array(COPY),
     "topology": Array(I8),  # as ``machine.topology`` reads it
@@ -148,6 +162,7 @@ ARRAYS = {
     "sort_items": Array(I8, lambda n: max(n.objects, n.sent)),
     "tested_rays": Array(I4, lambda n: n.tested),
     "tested_objects": Array(I4, lambda n: n.tested),
+    "ends_ps": Array(I8, lambda n: n.ended),  # of finished rays
     "free_ps": Array(I8),  # from when on each link and port is free; empty without contention
     "log": Array(EVENT, lambda n: n.logged),
     # What a PE did in each bin, BINS per PE; this and what follows: empty without counters.
@@ -213,9 +228,13 @@ PARAMETERS = (
     "refresh_ps",  # NONE: no refresh
     "sample_ps",  # between two samples of all loads
     "merge_requests",
+    "measures",  # there is a capacity to compare with,
+    "bounded",  # credits, and room for rays and objects,
+    "escapes",  # and a PE that can't go on fetches an object
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
+    "record_ends",
     "logs",
     "record_counters",
 )
@@ -232,6 +251,7 @@ COUNTERS = (
     "bin_width",  # k: the bins of the counters are 2^k ps wide
     "n_events",  # in the heap of the compiled event loop
     "arrivals",  # that it has seen
+    "progress_at",  # ``activities`` at the last test or finished ray
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
     "user_dropped",  # messages of the policy's own that were one too many, or to nobody

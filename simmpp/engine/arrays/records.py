@@ -95,6 +95,43 @@ PEER = np.dtype(
     ],
     align=True,
 )
+ROOM = np.dtype(
+    [
+        ("queue_rays", "i8"),  # for how many rays there is room
+        ("share", "i8"),  # bytes for the rays of each other PE
+        ("share_rays", "i8"),  # rays that these are at least, in one message
+        ("fetch_bytes", "i8"),  # for fetched objects
+        ("resident", "i8"),  # bytes of resident objects
+        ("reserved", "i8"),  # rays that those which are started may become
+        ("fetched", "i8"),  # bytes of objects asked for, pinned or kept
+        ("unread", "i8"),  # bytes of rays in the inbox and in shares, with their headers
+        ("control", "i8"),  # bytes of unread requests, and of headers without rays
+        ("peak_control", "i8"),
+        ("peak", "i8"),  # most of resident, fetched, rays, unread together; and what it was made of
+        ("peak_fetched", "i8"),
+        ("peak_queue", "i8"),
+        ("peak_receive", "i8"),
+        ("smallest", "i8"),  # no ray in a share needs room for fewer
+        ("escapes", "i8"),
+        ("credit_messages", "i8"),
+        ("first", "i4"),  # received messages of which rays are left, linked through MESSAGE.next
+        ("last", "i4"),
+        ("stuck", "i4"),  # the ray whose object is on its way to the escape room, or there; or NONE
+        ("refused", "i4"),  # bits SENDS, RECEIVES, ASKS: what this dispatch has refused,
+        ("stalled", "i4"),  # what the last one has,
+        ("since_ps", "i8", (3,)),  # since when,
+        ("stalled_ps", "i8", (3,)),  # and how long it was, before
+    ],
+    align=True,
+)
+"""A PE's memory, where it ends."""
+CREDIT = np.dtype(
+    [
+        ("used", "i8"),  # bytes of the share that the other keeps for this PE
+        ("owed", "i8"),  # bytes of the share for the other that are free; it is not told yet
+    ]
+)
+"""Flow of rays between a PE and another, beside its row of PEER."""
 MESSAGE = np.dtype(
     [
         ("depart_ps", "i8"),
@@ -105,6 +142,7 @@ MESSAGE = np.dtype(
         ("arrival_ps", "i8"),
         ("busy_ps", "i8"),  # with contention: how long its bytes take from port to port,
         ("head_ps", "i8"),  # when its head is at the next link or port,
+        ("credit", "i8"),  # bytes of the receiver's share that are free again
         ("at", "i4"),  # and the node where that is, as the topology numbers it
         ("destination", "i4"),
         ("source", "i4"),
@@ -117,6 +155,7 @@ MESSAGE = np.dtype(
         ("last", "i4"),
         ("n", "i4"),
         ("kind", "i4"),  # of this part, and so of the message; NONE: a free place
+        ("purpose", "i4"),  # ORDINARY, FOR_ESCAPE (a request, an object), FOR_CREDIT (a load)
     ],
     align=True,
 )
@@ -191,6 +230,7 @@ SLICE = np.dtype(
 )
 """What is counted of a PE when it works again, or the run is over: it may end before the work."""
 
+ORDINARY, FOR_ESCAPE, FOR_CREDIT = range(3)
 PIGGYBACK, EXACT, NO_INFO, SAMPLED, TWO = range(5)
 LOAD_INFO = {
     "piggyback": PIGGYBACK,

@@ -17,6 +17,7 @@ from simmpp.engine.arrays.views import (
     sendable,
     unsent,
 )
+from simmpp.engine.pe.bounds.credits import enough_for
 from simmpp.engine.pe.islands import holders_of
 from simmpp.engine.pe.peers import peer_of
 
@@ -57,7 +58,8 @@ def count_sendable(s: Run, me: int, miss_row: int, n_more: int) -> None:
 @kernel
 def _count(s: Run, me: int, peer_row: int, n_more: int) -> None:
     peer = peer_rows(s)[peer_row]
-    relist(unsent(s), me, peer_row, peer.sendable, peer.sendable + n_more, s.send_from)
+    enough = enough_for(s, peer_row)
+    relist(unsent(s), me, peer_row, peer.sendable, peer.sendable + n_more, enough)
     peer.sendable += n_more
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, PACK, UNPACK, Run
-from simmpp.engine.arrays.views import copy_costs, topology
+from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, NONE, PACK, UNPACK, Run
+from simmpp.engine.arrays.views import copy_costs, messages, topology
 from simmpp.machine.messages import LOAD, REQUEST
 from simmpp.machine.topology import receive_startup_ps, send_startup_ps
 from simmpp.machine.transfer import transfer_ps
@@ -53,3 +53,14 @@ def taken_in_ps(s: Run, me: int, other: int, kind: int, payload_bytes: int) -> t
     if s.service == BY_THREAD:
         return s.handoff_ps, receipt_ps
     return receipt_ps, 0
+
+
+@kernel
+def parts_ps(s: Run, message: int, which: int) -> int:
+    """Packing (``which`` is PACK) or unpacking (UNPACK) of all parts of a message."""
+    m = messages(s)[message]
+    cost_ps = copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
+    while m.part != NONE:
+        m = messages(s)[m.part]
+        cost_ps += copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
+    return cost_ps

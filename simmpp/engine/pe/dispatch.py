@@ -23,10 +23,9 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
-from simmpp.engine.arrays.hashtable import Lists, first, following, sort_by_key
+from simmpp.engine.arrays.hashtable import first, following, sort_by_key
 from simmpp.engine.arrays.records import NONE, SINGLY, TWO, Row, Run
 from simmpp.engine.arrays.views import (
-    exchanged,
     miss_rows,
     peer_rows,
     pes,
@@ -37,12 +36,18 @@ from simmpp.engine.arrays.views import (
     unasked,
     unsent,
 )
+from simmpp.engine.pe.bounds.admission import can_unpack
+from simmpp.engine.pe.bounds.credits import enough_for, rays_allowed, spend
+from simmpp.engine.pe.bounds.escape import escape
+from simmpp.engine.pe.bounds.rooms import ASKS, SENDS, has_ready, note_stalls, refuse, release_rays
 from simmpp.engine.pe.candidates import withdraw
+from simmpp.engine.pe.fetched import reserve_object
 from simmpp.engine.pe.islands import owner_of
-from simmpp.engine.pe.misses import drop_if_idle, is_holder, set_unasked
-from simmpp.engine.pe.peers import known_load, silence_ps
-from simmpp.engine.pe.sending import send_load, send_made_up, send_rays, send_request
+from simmpp.engine.pe.misses import is_holder, set_unasked, unfile
+from simmpp.engine.pe.peers import known_load
+from simmpp.engine.pe.sending import send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
+from simmpp.engine.pe.telling import collect_peers, refresh_loads, return_credits
 from simmpp.engine.record.counters import note_work
 from simmpp.policy.record import consult
 from simmpp.policy.view import View
@@ -54,16 +59,22 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
     pe = pes(s)[me]
     # Once, before anything is sent: what a message takes away doesn't make the next one urgent.
     view = view_of(s, me)
-    view.nothing_else = 1 if pe.n_ready == 0 and inbox_empty else 0
+    busy = has_ready(s, me) or (s.bounded and can_unpack(s, me))
+    view.nothing_else = 1 if inbox_empty and not busy else 0
     clock_ps = now_ps
     if s.sends:
         clock_ps = _send_rays(s, me, view, clock_ps)
     if s.asks:
         clock_ps = _ask_for_objects(s, me, view, clock_ps)
+    if s.escapes:
+        clock_ps = escape(s, me, inbox_empty, clock_ps)
     if s.packing != SINGLY:
         clock_ps = send_made_up(s, me, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
-        clock_ps = _refresh_loads(s, me, clock_ps)
+        clock_ps = refresh_loads(s, me, clock_ps)
+    if s.bounded:
+        clock_ps = return_credits(s, me, clock_ps)
+        note_stalls(s, me, now_ps)
     if s.record_counters and clock_ps > now_ps:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
@@ -74,9 +85,9 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
 def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
     pe = pes(s)[me]
     # Collected before the first message, as sending changes the lists.
-    n = _collect_peers(s, me, unsent(s), 2 * me + 1, 0)
+    n = collect_peers(s, me, unsent(s), 2 * me + 1, 0)
     if view.nothing_else:
-        n = _collect_peers(s, me, unsent(s), 2 * me, n)
+        n = collect_peers(s, me, unsent(s), 2 * me, n)
     clock_ps = now_ps
     if s.load_info == TWO and s.to_holders and n > 2:
         n = _keep_two(s, pe, me, n)
@@ -90,6 +101,8 @@ def _send_rays(s: Run, me: int, view: View, now_ps: int) -> int:
         may_go = consult(s.send, view)
         if may_go > 0:
             head, tail, n_rays = _take_rays(s, me, peer_row, may_go)
+            if n_rays == 0:  # there is no credit
+                continue
             pe.load -= n_rays
             s.rays_sent += n_rays
             if s.listens:
@@ -125,33 +138,20 @@ def _put_least_loaded_first(s: Run, n: int) -> None:
 def _still_enough(s: Run, view: View, peer_row: int) -> bool:
     """Is ``send`` to be asked, after rays that could have gone here went elsewhere?"""
     n = peer_rows(s)[peer_row].sendable
-    return n >= s.send_from or (n > 0 and view.nothing_else == 1)
-
-
-@kernel
-def _collect_peers(s: Run, me: int, lists: Lists, which: int, n: int) -> int:
-    """Add the peers of one list to the first n of ``sort_items``, in ring order from me."""
-    nb = s.processors
-    row = first(lists, which)
-    while row >= 0:
-        sort_keys(s)[n] = (peer_rows(s)[row].key % nb - me) % nb
-        sort_items(s)[n] = row
-        n += 1
-        row = following(lists, row)
-    sort_by_key(sort_keys(s), sort_items(s), n)
-    return n
+    return n >= enough_for(s, peer_row) or (n > 0 and view.nothing_else == 1)
 
 
 @kernel
 def _take_rays(s: Run, me: int, peer_row: int, enough: int) -> tuple[int, int, int]:
     """Unfile rays that may go to a PE, of whole objects, until there are enough or none is left.
 
-    Objects as they became sendable. Returns the first, the last and how many.
+    Objects as they became sendable; where credit ends, only the oldest rays of one. Returns the
+    first, the last and how many.
     """
     other = peer_rows(s)[peer_row].key % s.processors
-    head, tail, n = NONE, NONE, 0
+    head, tail, n, most = NONE, NONE, 0, rays_allowed(s, peer_row)
     miss_row = first(sendable(s), me if s.to_holders else peer_row)
-    while miss_row >= 0 and n < enough:
+    while miss_row >= 0 and n < min(enough, most):
         # The successor is read first: the row may be given back.
         miss, successor = miss_rows(s)[miss_row], following(sendable(s), miss_row)
         if not s.to_holders or is_holder(s, other, miss.key % s.n_objects):
@@ -159,14 +159,33 @@ def _take_rays(s: Run, me: int, peer_row: int, enough: int) -> tuple[int, int, i
                 head = miss.first
             else:
                 rays(s)[tail].next = miss.first
-            tail = miss.last
-            n += miss.n
-            withdraw(s, me, miss_row)
-            miss.first, miss.n = NONE, 0
-            set_unasked(s, me, miss_row, 0)
-            drop_if_idle(s, miss_row)
+            taken, tail = min(miss.n, most - n), miss.last
+            if taken < miss.n:
+                tail = _nth(s, miss.first, taken)
+            n += taken
+            unfile(s, me, miss_row, taken)
         miss_row = successor
+    if s.bounded:
+        _pay_for_rays(s, me, peer_row, head, n, enough)
     return head, tail, n
+
+
+@kernel
+def _nth(s: Run, ray: int, n: int) -> int:
+    """The n-th ray of a list, the first being 1."""
+    for _ in range(n - 1):
+        ray = rays(s)[ray].next
+    return ray
+
+
+@kernel
+def _pay_for_rays(s: Run, me: int, peer_row: int, head: int, n: int, enough: int) -> None:
+    """Rays leave, which takes credit and frees room; perhaps credit has kept others."""
+    release_rays(s, me, head, n)
+    if n > 0:
+        spend(s, peer_row, n)
+    if n < enough and peer_rows(s)[peer_row].sendable > 0:
+        refuse(s, me, SENDS)
 
 
 @kernel
@@ -178,6 +197,9 @@ def _ask_for_objects(s: Run, me: int, view: View, now_ps: int) -> int:
         show_object(s, view, me, miss_row, clock_ps, s.ask_reads)
         answer = consult(s.ask, view)
         if answer > 0:
+            if s.measures and not reserve_object(s, me, miss_row):
+                refuse(s, me, ASKS)
+                continue
             miss = miss_rows(s)[miss_row]
             obj = miss.key % s.n_objects
             other = _who_has(s, me, obj, answer - 2)
@@ -213,20 +235,3 @@ def _collect_misses(s: Run, me: int, nothing_else: int) -> int:
             row = following(unasked(s), row)
     sort_by_key(sort_keys(s), sort_items(s), n)
     return n
-
-
-@kernel
-def _refresh_loads(s: Run, me: int, now_ps: int) -> int:
-    """Tell peers that have heard nothing for long my load (the cure of Nebel 1998, 4.2.2).
-
-    With nic: get the load of those of which nothing was heard for long.
-
-    Not after the receipt of such a message, or loads would answer loads for ever.
-    """
-    clock_ps = now_ps
-    for i in range(_collect_peers(s, me, exchanged(s), me, 0)):
-        peer_row = sort_items(s)[i]
-        if silence_ps(s, peer_row, clock_ps) >= s.refresh_ps:
-            other = peer_rows(s)[peer_row].key % s.processors
-            clock_ps = send_load(s, me, other, clock_ps)
-    return clock_ps

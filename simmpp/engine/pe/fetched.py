@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import append, find, first, following, unlink
-from simmpp.engine.arrays.records import Run
-from simmpp.engine.arrays.views import miss_rows, misses, object_bytes, pes, rays, recent
+from simmpp.engine.arrays.records import NONE, Run
+from simmpp.engine.arrays.views import miss_rows, misses, object_bytes, pes, rays, recent, rooms
 from simmpp.engine.pe.candidates import set_sendable
 from simmpp.engine.pe.misses import drop_if_idle
 from simmpp.engine.pe.ready import make_ready
@@ -34,8 +34,62 @@ def admit_object(s: Run, me: int, obj: int, links: int) -> None:
     if s.keeps:
         _keep(s, me, miss_row)
     elif miss.pinned == 0:
-        pes(s)[me].held_bytes -= object_bytes(s)[obj]
+        _let_go(s, me, miss_row)
     drop_if_idle(s, miss_row)
+
+
+@kernel
+def _let_go(s: Run, me: int, miss_row: int) -> None:
+    """A fetched object is in memory no more; it may be on its way once again."""
+    miss = miss_rows(s)[miss_row]
+    n_bytes = object_bytes(s)[miss.key % s.n_objects]
+    pes(s)[me].held_bytes -= n_bytes
+    if s.measures and miss.requests == 0:
+        rooms(s)[me].fetched -= n_bytes
+
+
+@kernel
+def reserve_object(s: Run, me: int, miss_row: int) -> bool:
+    """Keep room for an object that is to be asked for; is there any?
+
+    Kept objects that no ray needs at once leave for it, if that makes room enough.
+    """
+    miss, room = miss_rows(s)[miss_row], rooms(s)[me]
+    if miss.pinned > 0:  # it is counted already
+        return True
+    n_bytes = object_bytes(s)[miss.key % s.n_objects]
+    if s.bounded and room.fetched + n_bytes > room.fetch_bytes:
+        if room.fetched - _idle_bytes(s, me) + n_bytes > room.fetch_bytes:
+            return False
+        while room.fetched + n_bytes > room.fetch_bytes:
+            leaving = _first_idle(s, me)
+            _drop(s, me, leaving)
+            drop_if_idle(s, leaving)
+    room.fetched += n_bytes
+    return True
+
+
+@kernel
+def _idle_bytes(s: Run, me: int) -> int:
+    """Bytes of kept objects that no ray needs at once."""
+    n_bytes, row = 0, first(recent(s), me)
+    while row >= 0:
+        if miss_rows(s)[row].pinned == 0:
+            n_bytes += object_bytes(s)[miss_rows(s)[row].key % s.n_objects]
+        row = following(recent(s), row)
+    return n_bytes
+
+
+@kernel
+def _first_idle(s: Run, me: int) -> int:
+    """Of those the one that leaves first; there must be one."""
+    leaving, row = NONE, first(recent(s), me)
+    while row >= 0:
+        miss = miss_rows(s)[row]
+        if miss.pinned == 0 and (leaving == NONE or miss.rank < miss_rows(s)[leaving].rank):
+            leaving = row
+        row = following(recent(s), row)
+    return leaving
 
 
 @kernel
@@ -113,7 +167,7 @@ def _drop(s: Run, me: int, miss_row: int) -> None:
     pe.n_transient -= 1
     pe.transient_bytes -= n_bytes
     if miss.pinned == 0:
-        pe.held_bytes -= n_bytes
+        _let_go(s, me, miss_row)
 
 
 @kernel
@@ -131,7 +185,7 @@ def unpin(s: Run, me: int, miss_row: int, obj: int, now_ps: int) -> None:
     miss.pinned -= 1
     if miss.pinned == 0:
         if miss.transient == 0:
-            pes(s)[me].held_bytes -= object_bytes(s)[obj]
+            _let_go(s, me, miss_row)
         elif s.keep != 0:
             _rank(s, me, miss_row, now_ps)
     drop_if_idle(s, miss_row)

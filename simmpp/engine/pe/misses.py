@@ -18,8 +18,9 @@ from simmpp.engine.arrays.views import (
     replica_offsets,
     resident,
     unasked,
+    waited,
 )
-from simmpp.engine.pe.candidates import relist, set_sendable
+from simmpp.engine.pe.candidates import count_sendable, relist, set_sendable, withdraw
 from simmpp.engine.pe.islands import owner_of, owns
 from simmpp.engine.pe.peers import peer_of
 from simmpp.policy.view import LOADS
@@ -78,6 +79,27 @@ def file_ray(s: Run, me: int, ray: int, obj: int) -> None:
         if miss.unasked == 0:
             miss.since = pe.waits
         set_unasked(s, me, miss_row, miss.unasked + 1)
+    if s.bounded:
+        waited(s)[ray] = pe.waits
+
+
+@kernel
+def unfile(s: Run, me: int, miss_row: int, n: int) -> None:
+    """The n rays that have waited longest for an object leave; nobody has asked for it."""
+    miss = miss_rows(s)[miss_row]
+    if n == miss.n:
+        withdraw(s, me, miss_row)
+        miss.first, miss.n = NONE, 0
+        set_unasked(s, me, miss_row, 0)
+        drop_if_idle(s, miss_row)
+        return
+    if s.sends:
+        count_sendable(s, me, miss_row, -n)
+    for _ in range(n):
+        miss.first = rays(s)[miss.first].next
+    miss.n -= n
+    miss.since = waited(s)[miss.first]
+    set_unasked(s, me, miss_row, miss.n)
 
 
 @kernel
@@ -111,6 +133,6 @@ def drop_if_idle(s: Run, miss_row: int) -> None:
 def set_unasked(s: Run, me: int, miss_row: int, n: int) -> None:
     """Change the number of rays that no request covers, and the list that shows it."""
     miss = miss_rows(s)[miss_row]
-    if s.asks:
+    if s.asks or s.escapes:
         relist(unasked(s), me, miss_row, miss.unasked, n, s.ask_from)
     miss.unasked = n

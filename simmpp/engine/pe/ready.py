@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
-from simmpp.engine.arrays.views import child_offsets, pes, pixels, rays
+from simmpp.engine.arrays.views import child_offsets, ends_ps, most_alive, pes, pixels, rays, rooms
+from simmpp.engine.pe.bounds.rooms import fits, note_memory
 
 
 @kernel
@@ -38,13 +39,34 @@ def next_ready(s: Run, me: int) -> int:
     pe = pes(s)[me]
     if pe.pixel < pe.pixel_end and (pe.first == NONE or not (s.depth_first or pe.cut)):
         ray = pixels(s)[pe.pixel]
-        pe.pixel += 1
-        rays(s)[ray].next = pe.first
-        if pe.first == NONE:
-            pe.last = ray
-        pe.first = ray
+        if not s.bounded or fits(s, me, ray):
+            _start(s, me, ray)
     pe.cut = 0
     return pe.first
+
+
+@kernel
+def _start(s: Run, me: int, ray: int) -> None:
+    """Put the next pixel to the front of the list."""
+    pe = pes(s)[me]
+    pe.pixel += 1
+    rays(s)[ray].next = pe.first
+    if pe.first == NONE:
+        pe.last = ray
+    pe.first = ray
+    if s.bounded:
+        rooms(s)[me].reserved += most_alive(s)[ray]
+    if s.measures:
+        note_memory(s, me)
+
+
+@kernel
+def cross(s: Run, first: int, n: int, links: int) -> None:
+    """Links were crossed by n linked rays."""
+    ray = first
+    for _ in range(n):
+        rays(s)[ray].hops += links
+        ray = rays(s)[ray].next
 
 
 @kernel
@@ -72,3 +94,9 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     s.rays_done += 1
     s.rays_left += end - child - 1
     s.last_ray_ps = max(s.last_ray_ps, now_ps)
+    if s.record_ends:
+        ends_ps(s)[ray] = now_ps
+    if s.bounded and child == end:
+        rooms(s)[me].reserved -= 1  # else its children have its room
+    elif s.measures and not s.bounded:
+        note_memory(s, me)

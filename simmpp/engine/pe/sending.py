@@ -14,6 +14,7 @@ from simmpp.engine.arrays.records import (
     BY_NIC,
     ITS_LOAD,
     NONE,
+    ORDINARY,
     PACK,
     REQUESTS_TOGETHER,
     SINGLY,
@@ -21,7 +22,6 @@ from simmpp.engine.arrays.records import (
     Run,
 )
 from simmpp.engine.arrays.views import (
-    copy_costs,
     made_up,
     message_marks,
     messages,
@@ -35,7 +35,8 @@ from simmpp.engine.arrays.views import (
     user_words,
 )
 from simmpp.engine.network import depart
-from simmpp.engine.pe.costs import copy_ps, sending_ps
+from simmpp.engine.pe.bounds.credits import take_owed
+from simmpp.engine.pe.costs import parts_ps, sending_ps
 from simmpp.engine.pe.peers import note_departure_to
 from simmpp.engine.record.counters import note_departure
 from simmpp.engine.record.log import note_send
@@ -44,31 +45,20 @@ from simmpp.policy.view import View
 
 
 @kernel
-def parts_ps(s: Run, message: int, which: int) -> int:
-    """Packing (``which`` is PACK) or unpacking (UNPACK) of all parts of a message."""
-    m = messages(s)[message]
-    cost_ps = copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    while m.part != NONE:
-        m = messages(s)[m.part]
-        cost_ps += copy_ps(copy_costs(s)[which + m.kind], m.part_bytes)
-    return cost_ps
-
-
-@kernel
 def send_request(s: Run, me: int, other: int, obj: int, now_ps: int) -> int:
     """Ask a PE that has an object for it."""
-    row = _new_part(s, REQUEST, other, s.request_bytes)
+    row = new_part(s, REQUEST, other, s.request_bytes)
     messages(s)[row].obj = obj
-    return _post(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
 def send_rays(s: Run, me: int, other: int, first: int, last: int, n: int, now_ps: int) -> int:
     """Send n linked rays, first ... last, which must have left the sender's load already."""
-    row = _new_part(s, RAYS, other, n * s.ray_bytes)
+    row = new_part(s, RAYS, other, n * s.ray_bytes)
     m = messages(s)[row]
     m.first, m.last, m.n = first, last, n
-    return _post(s, me, row, now_ps)
+    return post(s, me, row, now_ps)
 
 
 @kernel
@@ -77,26 +67,26 @@ def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
 
     With nic get the other's load.
     """
-    row = _new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
+    row = new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
     if s.service == BY_NIC:
         messages(s)[row].obj = ITS_LOAD
-    return _send(s, me, row, now_ps)
+    return send(s, me, row, now_ps)
 
 
 @kernel
 def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
     """Send a message of the policy's own: the words that it has left in its view."""
-    row = _new_part(s, USER, other, USER_WORDS * WORD_BYTES)
+    row = new_part(s, USER, other, USER_WORDS * WORD_BYTES)
     for i in range(USER_WORDS):
         user_words(s)[USER_WORDS * row + i] = view.words[i]
-    return _send(s, me, row, now_ps)
+    return send(s, me, row, now_ps)
 
 
 @kernel
 def answer(s: Run, me: int, message: int, now_ps: int) -> int:
     """Send what a message asks for; returns the moment when that has been packed."""
     row = answer_to(s, message)
-    return _send(s, me, row, now_ps) if row != NONE else now_ps
+    return send(s, me, row, now_ps) if row != NONE else now_ps
 
 
 @kernel
@@ -106,8 +96,8 @@ def answer_to(s: Run, message: int) -> int:
     while part != NONE:
         m = messages(s)[part]
         if m.kind == REQUEST:
-            row = _new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
-            messages(s)[row].obj = m.obj
+            row = new_part(s, OBJECT, messages(s)[message].source, object_bytes(s)[m.obj])
+            messages(s)[row].obj, messages(s)[row].purpose = m.obj, m.purpose
             if answering == NONE:
                 answering = row
             else:
@@ -129,13 +119,14 @@ def forget(s: Run, message: int) -> None:
 
 
 @kernel
-def _new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
+def new_part(s: Run, kind: int, destination: int, payload_bytes: int) -> int:
     """A message of one part, which may become a part of another one."""
     row = take(messages(s), message_marks(s))
     m = messages(s)[row]
     m.kind, m.destination = kind, destination
     m.payload_bytes = m.part_bytes = payload_bytes
     m.obj, m.n = NONE, 0
+    m.credit, m.purpose = 0, ORDINARY
     m.part, m.last_part = NONE, row
     m.depart_ps = NONE  # a later part never departs by itself
     return row
@@ -151,10 +142,10 @@ def _append(s: Run, message: int, part: int) -> None:
 
 
 @kernel
-def _post(s: Run, me: int, row: int, now_ps: int) -> int:
+def post(s: Run, me: int, row: int, now_ps: int) -> int:
     """Send what a dispatch has decided on, or put it to what else goes to that PE."""
     if s.packing == SINGLY:
-        return _send(s, me, row, now_ps)
+        return send(s, me, row, now_ps)
     m = messages(s)[row]
     place = _place(s, me, m)
     if _is_get(s, m):
@@ -196,12 +187,12 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
     s.n_sent = 0
     clock_ps = now_ps
     for i in range(n):
-        clock_ps = _send(s, me, sort_items(s)[i], clock_ps)
+        clock_ps = send(s, me, sort_items(s)[i], clock_ps)
     return clock_ps
 
 
 @kernel
-def _send(s: Run, me: int, row: int, now_ps: int) -> int:
+def send(s: Run, me: int, row: int, now_ps: int) -> int:
     """Pack a message and let it depart."""
     m = messages(s)[row]
     m.load = pes(s)[me].load
@@ -221,6 +212,8 @@ def pack(s: Run, me: int, row: int, now_ps: int) -> int:
     startup_ps = sending_ps(s, me, m.destination, m.kind)
     m.depart_ps = now_ps + startup_ps + parts_ps(s, row, PACK)
     set_off(s, m)
+    if s.bounded:
+        m.credit = take_owed(s, me, m.destination)
     if s.packing != SINGLY:
         _count_parts(s, row)
     if s.refresh_ps != NONE:

@@ -2,7 +2,7 @@
 
 It alternates between two instants, which fall together where it sent no answer: one message has
 been unpacked, and it begins with the next. What is not only requests it hands over to its PE, which
-takes it over as it would receive it (``step.receive``).
+takes it over as it would receive it (``receiving.receive``).
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, Run
 from simmpp.engine.arrays.views import messages, pes
 from simmpp.engine.pe.peers import hear_load
+from simmpp.engine.pe.receiving import unpacking_ps
 from simmpp.engine.pe.sending import answer_to, forget, pack
-from simmpp.engine.pe.step import unpacking_ps
 from simmpp.engine.record.counters import count_message
 from simmpp.engine.record.log import note_answer, note_serve
 from simmpp.machine.limits import CLOCK_LIMIT_PS

@@ -34,7 +34,7 @@ def view_of(s: Run, me: int) -> View:
 def show_destination(s: Run, view: View, me: int, peer_row: int, now_ps: int) -> None:
     """Show ``send`` a PE that waiting rays may go to."""
     peer = peer_rows(s)[peer_row]
-    other, waiting = peer.key % s.processors, peer.sendable
+    other, waiting = peer.key - me * s.processors, peer.sendable
     view.load, view.other = pes(s)[me].load, other - pes(s)[me].base
     view.waiting, view.unasked = waiting, 0
     if s.send_reads & LOADS:
@@ -65,7 +65,7 @@ def show_nothing(view: View) -> None:
 def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: int) -> None:
     """Show ``ask`` an object that rays wait for, ``keep`` one that they have used."""
     miss = miss_rows(s)[miss_row]
-    obj = miss.key % s.n_objects
+    obj = miss.key - me * s.n_objects
     other = owner_of(s, me, obj)
     view.load, view.other = pes(s)[me].load, other - pes(s)[me].base
     view.waiting, view.unasked = miss.n, miss.unasked

@@ -12,13 +12,10 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import find
 from simmpp.engine.arrays.records import (
     BEGIN,
-    BY_PE,
-    BY_THREAD,
     DISPATCH,
     NONE,
     SAMPLED,
     SLEEP,
-    UNPACK,
     WOKEN,
     Row,
     Run,
@@ -26,28 +23,27 @@ from simmpp.engine.arrays.records import (
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
-    messages,
     misses,
     pes,
     rays,
+    rooms,
     test_ps,
     tested_objects,
     tested_rays,
-    topology,
 )
-from simmpp.engine.pe.costs import receiving_ps
+from simmpp.engine.pe.bounds.admission import can_unpack, unpack
+from simmpp.engine.pe.bounds.escape import ESCAPED
+from simmpp.engine.pe.bounds.rooms import has_ready, note_memory
 from simmpp.engine.pe.dispatch import dispatch
-from simmpp.engine.pe.fetched import admit_object, touch, unpin
+from simmpp.engine.pe.fetched import touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.peers import hear_load, sample_loads
-from simmpp.engine.pe.ready import finish_ray, make_ready, next_ready, pop_ready
-from simmpp.engine.pe.sending import answer, forget, parts_ps
-from simmpp.engine.pe.talking import get_on, hear, rest, wake
+from simmpp.engine.pe.peers import sample_loads
+from simmpp.engine.pe.ready import finish_ray, next_ready, pop_ready
+from simmpp.engine.pe.receiving import receive
+from simmpp.engine.pe.talking import get_on, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
-from simmpp.engine.record.log import note_compute, note_receive
+from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
-from simmpp.machine.topology import hops
 
 
 @kernel
@@ -73,6 +69,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     # begins in this very instant, with the inbox as it was before.
     if s.n_sent == 0:
         next_ps = _begin(s, me, phase, message, now_ps)
+    if s.measures:
+        note_memory(s, me)
     if s.phase != WOKEN:
         pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
@@ -86,17 +84,33 @@ def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     pe = pes(s)[me]
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
-    if message == NONE and pe.n_ready == 0:
+    unpacks = message == NONE and s.bounded and can_unpack(s, me)
+    if message == NONE and not unpacks and not has_ready(s, me):
         return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
     s.activities += 1
+    if s.bounded:
+        _require_progress(s)
     s.phase = DISPATCH
     if message != NONE:
         s.consumed = 1
         next_ps = receive(s, me, message, now_ps)
+    elif unpacks:
+        next_ps = unpack(s, me, now_ps)
     else:
         next_ps = compute(s, me, now_ps)
     note_peaks(s, pe)
     return next_ps
+
+
+@kernel
+def _require_progress(s: Run) -> None:
+    """No more than so many activities lie between two tests or finished rays (``bounds.escape``).
+
+    Most seen in random cases on 8 PEs: 1,460.
+    """
+    nb = s.processors
+    if s.activities - s.progress_at > 10 * nb**3 + 200 + 10 * nb * s.rays_left:
+        raise RuntimeError("no progress")
 
 
 @kernel
@@ -107,75 +121,6 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 
 @kernel
-def receive(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Unpack one message and do what it asks for; returns the end of that work.
-
-    If a thread has done that already, take the message over.
-    """
-    pe, m = pes(s)[me], messages(s)[message]
-    if s.service == BY_THREAD:
-        clock_ps = now_ps + s.handoff_ps
-    else:
-        clock_ps = now_ps + unpacking_ps(s, me, message)
-        # Heard before an answer is packed, and whatever the message is.
-        hear_load(s, me, m, clock_ps)
-        s.received += 1
-    pe.received_load = 1 if m.kind == LOAD else 0
-    links = hops(topology(s), m.source, me) if s.record_hops else 0
-    part = message
-    while part != NONE:
-        _take_in(s, me, messages(s)[part], links)
-        part = messages(s)[part].part
-    if s.logs:
-        note_receive(s, me, message, now_ps, clock_ps)
-    if s.record_counters and m.kind == RAYS:
-        note_load(s, me, clock_ps)
-    # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
-    # a rule.
-    if s.service == BY_PE:
-        clock_ps = answer(s, me, message, clock_ps)
-    if m.kind == USER:
-        clock_ps = hear(s, me, message, clock_ps)
-    elif m.kind == OBJECT or m.kind == RAYS:
-        get_on(pe)
-    if s.record_counters:
-        note_work(s, me, now_ps, clock_ps, clock_ps)
-    pe.communication_ps += clock_ps - now_ps
-    forget(s, message)
-    return clock_ps
-
-
-@kernel
-def unpacking_ps(s: Run, me: int, message: int) -> int:
-    """What a message costs its receiver."""
-    m = messages(s)[message]
-    return receiving_ps(s, me, m.source, m.kind) + parts_ps(s, message, UNPACK)
-
-
-@kernel
-def _take_in(s: Run, me: int, m: Row, links: int) -> None:
-    """The part of a message that rays or an object are, which came over that many links."""
-    if m.kind == OBJECT:
-        admit_object(s, me, m.obj, 2 * links)
-    elif m.kind == RAYS:
-        pe = pes(s)[me]
-        pe.load += m.n
-        pe.peak_rays = max(pe.peak_rays, pe.load)
-        if links > 0:
-            _cross(s, m.first, m.n, links)
-        make_ready(s, me, m.first, m.last, m.n)
-
-
-@kernel
-def _cross(s: Run, first: int, n: int, links: int) -> None:
-    """Links were crossed by n linked rays."""
-    ray = first
-    for _ in range(n):
-        rays(s)[ray].hops += links
-        ray = rays(s)[ray].next
-
-
-@kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
     """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
@@ -183,7 +128,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     clock_ps = start_ps
     pe.received_load = 0
     tests, done = 0, s.rays_done
-    while tests < s.quantum and pe.n_ready > 0:
+    while tests < s.quantum and has_ready(s, me):
         ray = next_ready(s, me)
         first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
         while first + rays(s)[ray].tested < end:
@@ -206,6 +151,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             pop_ready(s, me)
             finish_ray(s, me, ray, clock_ps)
     if tests > 0 or s.rays_done > done:
+        s.progress_at = s.activities
         get_on(pe)
     if s.logs:
         note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
@@ -230,6 +176,8 @@ def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
         miss_row = find(misses(s), me * s.n_objects + obj)
         if miss_row != NONE:  # a resident object has none
             touch(s, me, miss_row)
-            if r.granted:
+            if r.granted == 1:
                 unpin(s, me, miss_row, obj, now_ps)
+        if r.granted == ESCAPED:
+            rooms(s)[me].stuck = NONE
         r.granted = 0

@@ -27,7 +27,7 @@ from simmpp.engine.arrays.records import (
     Run,
 )
 from simmpp.engine.arrays.views import log, messages, pes
-from simmpp.machine.messages import OBJECT, REQUEST
+from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 
 LOG_ROWS = 1 << 13
 """Rows that are kept before they are handed on: half a megabyte."""
@@ -57,6 +57,14 @@ def note_receive(s: Run, me: int, message: int, begin_ps: int, end_ps: int) -> N
     m = messages(s)[message]
     _note(s, me, RECEIVE, 0, m.n, begin_ps, end_ps)
     _note_message(s, message, m.source)
+
+
+@kernel
+def note_unpack(s: Run, me: int, n: int, n_bytes: int, begin_ps: int, end_ps: int) -> None:
+    """Rays of messages that were received before were taken in: a receipt from nobody."""
+    _note(s, me, RECEIVE, 0, n, begin_ps, end_ps)
+    event = log(s)[s.n_logged - 1]
+    event.other, event.kind, event.number, event.payload_bytes = NONE, RAYS, NONE, n_bytes
 
 
 @kernel

@@ -22,6 +22,8 @@ class Recording:
     """What pictures are made of: what happened when, and who sent how much to whom."""
     hops: bool = False
     """The links that were crossed for each ray."""
+    ends: bool = False
+    """When each ray was finished."""
 
     @property
     def sink(self) -> Sink | None:

@@ -15,7 +15,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.units import share
 from simmpp.methods.columns import PLACE
-from simmpp.placement.placement import AS_FRACTION
+from simmpp.placement.rooms import AS_FRACTION
 from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.words import is_number
 from simmpp.sweeps.intervals import of_logarithms

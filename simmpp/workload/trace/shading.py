@@ -27,6 +27,7 @@ from simmpp.workload.workload import REFLECTED, SHADOW, Workload
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Flags = NDArray[np.bool_]
 
 AMBIENT = 0.1
 """Light that comes from everywhere. ESTIMATE: NFF has none, the SPD asks for a little."""
@@ -47,15 +48,20 @@ class Lighting(NamedTuple):
     """Lights are seen by shadow rays; else by every surface that faces them."""
 
 
-def render(scene: Scene, picture: Picture, workload: Workload) -> NDArray[np.uint8]:
+def render(
+    scene: Scene, picture: Picture, workload: Workload, done: Flags | None = None
+) -> NDArray[np.uint8]:
     """The picture of the recorded hits, (rows, columns, 3) uint8.
+
+    ``done`` (n0,) bool are the primary rays that count, all by default; a pixel that has none, or
+    one whose corners are not all there, is black.
 
     Raises
     ------
     WorkloadError
         The workload is not of this scene and picture.
     """
-    return shade(traced(scene, picture, workload), workload.hits.copy())
+    return shade(traced(scene, picture, workload), workload.hits.copy(), done)
 
 
 def save_png(image: NDArray[np.uint8], path: str | os.PathLike[str]) -> None:
@@ -64,13 +70,14 @@ def save_png(image: NDArray[np.uint8], path: str | os.PathLike[str]) -> None:
         Image.fromarray(image).save(part, format="PNG")
 
 
-def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
+def shade(traced: Traced, hits: Ints, done: Flags | None = None) -> NDArray[np.uint8]:
     """The picture if rays hit ``hits`` (n,) int32.
 
     A ray whose hit is not the recorded one has lost its children: it shows its ambient light.
     """
     if traced.picture.render == PATH:
-        return shade_paths(traced, hits)
+        light = light_of_roots(traced, hits)
+        return in_bytes(_pixels(light, traced.picture, done))
     workload, lighting = traced.workload, _lighting(traced)
     colours = np.zeros((workload.n_rays, 3))
     as_recorded, first_shadows = hits == workload.hits, _first_shadows(workload)
@@ -83,7 +90,7 @@ def shade(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
             geometry, lighting, rays, start, hits, as_recorded, distances, shadows, work, colours
         )
     _gather(colours, workload.kinds, workload.parents, hits, as_recorded, lighting.materials)
-    return in_bytes(_pixels(colours, traced.picture))
+    return in_bytes(_pixels(colours, traced.picture, done))
 
 
 def in_bytes(pixels: Floats) -> NDArray[np.uint8]:
@@ -99,13 +106,6 @@ def light(scene: Scene, picture: Picture, workload: Workload) -> Floats:
     replayed = traced(scene, picture, workload)
     of_roots = light_of_roots(replayed, workload.hits.copy())
     return picture_of_roots(of_roots, workload.picture, workload.samples)
-
-
-def shade_paths(traced: Traced, hits: Ints) -> NDArray[np.uint8]:
-    """The same of traced paths."""
-    workload = traced.workload
-    of_roots = light_of_roots(traced, hits)
-    return in_bytes(picture_of_roots(of_roots, workload.picture, workload.samples))
 
 
 def _first_shadows(workload: Workload) -> Ints:
@@ -224,10 +224,14 @@ def _gather(
                 colours[parent, c] += share * colours[i, c]
 
 
-def _pixels(colours: Floats, picture: Picture) -> Floats:
+def _pixels(colours: Floats, picture: Picture, done: Flags | None) -> Floats:
     """(rows, columns, 3) float64: a pixel is its centre, or the mean of its corners or samples."""
     if picture.samples != CORNERS:
-        return picture_of_roots(colours[: picture.n_roots], picture.shape, picture.passes)
+        return picture_of_roots(colours[: picture.n_roots], picture.shape, picture.passes, done)
     samples = colours[: picture.n_roots].reshape(*picture.shape, 3)
+    if done is not None:
+        there = done.reshape(picture.shape)
+        there = there[:-1, :-1] & there[:-1, 1:] & there[1:, :-1] & there[1:, 1:]
+        return there[:, :, None] * _pixels(colours, picture, None)
     mean: Floats = (samples[:-1, :-1] + samples[:-1, 1:] + samples[1:, :-1] + samples[1:, 1:]) / 4
     return mean

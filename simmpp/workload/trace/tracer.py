@@ -13,8 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.compiled import njit
-from simmpp.common.errors import ConfigError
-from simmpp.common.units import format_bytes
 from simmpp.common.validate import require_kind
 from simmpp.scene.boxes import boxes_of
 from simmpp.scene.check import check_scene
@@ -22,42 +20,30 @@ from simmpp.scene.columns import columns_of
 from simmpp.scene.scene import Scene
 from simmpp.scene.wire import sizes_on_the_wire
 from simmpp.workload.digest import digest_of
-from simmpp.workload.picture import Picture
+from simmpp.workload.picture import PATH, Picture
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import Frame, frame_of
 from simmpp.workload.trace.generations import Rules, children, first_generation, spawning
 from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
+from simmpp.workload.trace.path.generations import drawn_rays
 from simmpp.workload.trace.ray_batch import RayBatch, joined
+from simmpp.workload.trace.room import (
+    Recorded,
+    few_roots,
+    require_memory,
+    require_numbers,
+    require_room,
+)
 from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
 """Rays of one batch: bounds the memory of what is only passing through."""
-BYTES_PER_RAY = 100
-"""Memory that every primary ray takes at least: two vectors with their temporaries, numbers."""
-MOST_RAYS = 2**31 - 1
-"""Ray numbers are int32."""
 Number = TypeVar("Number", bound=np.generic)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
 Run = Callable[..., Iterable[Any]]
 """Maps a function on lists, as ``map`` does."""
-
-
-class Recorded(NamedTuple):
-    """What is recorded of a run of rays, in workload order."""
-
-    kinds: NDArray[np.uint8]
-    parents: NDArray[np.int32]
-    """Ray numbers; -1 for primary rays."""
-    n_children: NDArray[np.int32]
-    hits: NDArray[np.int32]
-    distances: NDArray[np.float64]
-    """Normalised."""
-    n_tests: NDArray[np.int32]
-    """Lengths of the itineraries."""
-    objects: NDArray[np.int32]
-    """The itineraries, one after the other."""
 
 
 class Tracing(NamedTuple):
@@ -96,12 +82,15 @@ def trace(
     require_kind("picture", picture, Picture)
     check_scene(scene)
     picture = picture.of(scene)
-    _require_numbers(picture.n_roots, scene.name)
-    _require_memory(picture.n_roots, scene.name)
+    require_numbers(picture.n_roots, scene.name)
+    require_memory(picture.n_roots, scene.name)
     frame = frame_of(scene)
     geometry = flatten(scene, frame)
     rules = spawning(scene, picture, frame, geometry)
     tracing = Tracing(geometry, intersector(geometry), rules, scene.name)
+    if picture.render == PATH:
+        rays = drawn_rays(scene, picture, frame, few_roots(picture.n_roots))
+        require_room(picture.n_roots, _recorded(tracing, rays, map), scene.name)
     rays = first_generation(scene, picture, frame)
     with _threads(threads) as run:
         batches = _recorded(tracing, rays, run, progress)
@@ -145,7 +134,7 @@ def _recorded(
             spawned.append(young)
             batches.append(batch)
             known += len(young.kinds)
-            _require_numbers(known, tracing.name)
+            require_numbers(known, tracing.name)
             if progress:
                 progress(low + len(batch.kinds), known)
         del parts
@@ -160,23 +149,6 @@ def _of_batch(tracing: Tracing, depth: int, rays: RayBatch, low: int) -> tuple[R
     young, n_children = children(geometry, rays, hits, distances, rules, depth, low)
     recorded = rays.kinds, rays.parents, n_children, hits, distances, n_tests, objects
     return Recorded(*recorded), young
-
-
-def _require_numbers(n_rays: int, name: str) -> None:
-    if n_rays > MOST_RAYS:
-        problem = f"the picture has more than {MOST_RAYS} rays: lower its resolution or max_depth"
-        raise ConfigError(problem, where=name)
-
-
-def _require_memory(n_primaries: int, name: str) -> None:
-    """Refuse at once what would end in the system's killing the process, minutes later."""
-    if not hasattr(os, "sysconf"):  # Windows
-        return
-    memory_bytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if n_primaries * BYTES_PER_RAY > memory_bytes:
-        takes = f"{n_primaries} primary rays take {format_bytes(n_primaries * BYTES_PER_RAY)}"
-        problem = f"{takes}, there are {format_bytes(memory_bytes)}: expected a lower resolution"
-        raise ConfigError(problem, where=name)
 
 
 def _intersected(

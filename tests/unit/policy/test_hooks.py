@@ -7,7 +7,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from itertools import product
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import numba
 import numpy as np
@@ -15,12 +15,16 @@ import pytest
 
 import simmpp
 from simmpp.common.errors import ConfigError
+from simmpp.machine.machine import SERVICES, TOPOLOGY_NAMES
 from simmpp.policy import Policy, hook
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import POLICIES, PolicyParameters
+from simmpp.policy.plain import uncompiled
 from simmpp.policy.reads import groups_read, names_in, reads
 from simmpp.policy.record import VIEW
 from simmpp.policy.view import GROUPS, LOADS, NUMBERS, OBJECT, RANDOM, SELF, WAY, View
+from simmpp.policy.written import LoadInfo
+from simmpp.studies.policies.machines import random_case as random_machine
 
 MIN_LOAD = 2
 REST = {"min_load": MIN_LOAD, "in_flight": 1}
@@ -130,6 +134,7 @@ def test_what_a_hook_reads_is_found_where_it_calls_another() -> None:
     assert names_in(calls_another) >= {"known_load", "hops"}
     assert compiled(calls_another, known_load=3, hops=4) == 7
     assert groups_read(calls_another) == LOADS | WAY
+    assert uncompiled(calls_another)(cast(View, SimpleNamespace(known_load=3, hops=4))) == 7
     assert groups_read(in_a_lambda) == RANDOM
     assert groups_read(None) == groups_read(POLICIES["ray"].send) == 0
     assert groups_read(lambda v: v.object + v.now_ps) == OBJECT | SELF
@@ -178,3 +183,11 @@ def test_messages_of_its_own_have_columns_where_a_policy_sends_any() -> None:
     assert said["object"] == 0 < said["talks"]
     assert set(rows["messages"] - rows["user_messages"]) == {0}
     assert "user_messages" not in simmpp.sweep(config | {"policy": "object"}).rows
+
+
+def test_a_policy_is_checked_on_all_kinds_of_machines_and_all_ways_to_know_loads() -> None:
+    found = [random_machine(PolicyParameters("holders"), seed) for seed in range(50)]
+    assert {case.machine.topology for case in found} == set(TOPOLOGY_NAMES)
+    assert {case.machine.service for case in found} == set(SERVICES)
+    assert {case.policy.load_info for case in found} == set(get_args(LoadInfo))
+    assert {case.policy.refresh_ps for case in found} == {None, 10**6}

@@ -51,13 +51,20 @@ def light_of_roots(traced: Traced, hits: Ints) -> Floats:
     return colours[: workload.n_primaries]
 
 
-def picture_of_roots(light: Floats, shape: tuple[int, int], samples: int) -> Floats:
-    """The mean of each pixel's paths, (rows, columns, 3) float64."""
+def picture_of_roots(
+    light: Floats, shape: tuple[int, int], samples: int, done: Flags | None = None
+) -> Floats:
+    """The mean of each pixel's primary rays, of those that are ``done``: (rows, columns, 3).
+
+    ``done`` is (n0,) bool, None for all; a pixel without any is black.
+    """
     passes = light.reshape(samples, *shape, 3)
-    total = passes[0].copy()
-    for later in passes[1:]:  # one after the other: every sum in the same order
-        total += later
-    mean: Floats = total / samples
+    counts = np.ones(passes.shape[:3]) if done is None else 1.0 * done.reshape(samples, *shape)
+    total, n = np.zeros((*shape, 3)), np.zeros(shape)
+    for of_pass, count in zip(passes, counts, strict=True):  # every sum in the same order
+        total += of_pass * count[:, :, None]
+        n += count
+    mean: Floats = total / np.maximum(n, 1.0)[:, :, None]
     return mean
 
 

@@ -17,6 +17,7 @@ from simmpp.scene.scene import Light, MeshPart, Scene
 from simmpp.workload.check import check
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import Picture
+from simmpp.workload.trace import room as room_of_rays
 from simmpp.workload.trace import tracer
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.path.radiance import light_of_roots
@@ -160,6 +161,32 @@ def test_whitteds_rays_may_be_drawn_too() -> None:
     rays, objects = recorded_tests(workload)
     assert verify(SCENE, picture, workload, rays, objects) is None
     assert Picture(render="path").passes == 16
+
+
+def test_what_does_not_fit_is_refused_before_it_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[int] = []
+    monkeypatch.setattr(room_of_rays, "_bytes_there_are", lambda: 2**30)
+    trace(SCENE, PICTURE, progress=lambda done, known: told.append(done))
+    assert told
+    told.clear()
+    large = dataclasses.replace(PICTURE, resolution=(320, 256))
+    with pytest.raises(ConfigError) as caught:
+        trace(SCENE, dataclasses.replace(large, samples=20), lambda done, known: told.append(done))
+    assert not told
+    assert caught.value.problem.startswith("1638400 paths take about 1.")
+    assert caught.value.problem.endswith("expected fewer samples, or a lower resolution")
+    monkeypatch.setattr(room_of_rays, "_bytes_there_are", lambda: None)
+    with pytest.raises(ConfigError, match=r"have about \d+ rays, expected at most 2147483647"):
+        trace(SCENE, dataclasses.replace(PICTURE, resolution=4096, samples=64))
+
+
+def test_a_few_paths_tell_how_many_rays_all_have() -> None:
+    picture = dataclasses.replace(PICTURE, resolution=64, samples=8, depth=16)
+    whole = trace(SCENE, picture)
+    roots = room_of_rays.few_roots(picture.n_roots)
+    assert len(np.unique(roots % 64)) == 64  # all columns
+    of_few = np.isin(whole.pixels, roots).sum() * picture.n_roots / len(roots)
+    assert abs(of_few / whole.n_rays - 1) < 0.1
 
 
 @pytest.mark.parametrize(
