@@ -3,7 +3,7 @@
     python experiments/machines/by_network.py [FOLDER]
 
 The reading is plain, the machine the T3E with ``service: pe`` as in the paper, or with ``nic``: an
-object is fetched by a get that costs its owner nothing, rays are put. 512 x 512, seed 0; finished
+object is fetched by a get that costs its owner nothing, rays are put. 256 x 256, seed 0; finished
 simulations are kept in FOLDER (out/by_network). Writes by_network.csv, the verdicts on the claims
 of both figures and of the table of messages with either, and both figures with ``nic``.
 """
@@ -37,7 +37,12 @@ CLAIMS = (f3a, f3b, f3c, t1, f4a, f4b, f4c, f4d)
 
 def judged(folder: Path, service: str) -> list[Row]:
     """Simulate both figures and judge what is said of them."""
-    overrides = ("reading=plain", "seeds=[0]", f"machine.service={service}")
+    overrides = (
+        "reading=plain",
+        "seeds=[0]",
+        "picture.resolution=256",
+        f"machine.service={service}",
+    )
     plans = {name: plan_of(load_experiment(name, overrides)) for name in SHOWN}
     with closing(Journal(folder, {"versions": result_versions()})) as journal:
         run_plans(plans.values(), journal, workers=1)

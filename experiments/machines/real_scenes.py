@@ -50,7 +50,9 @@ def terrain() -> str:
     """Hills as OBJ."""
     x, z = np.meshgrid(np.linspace(0, 8, SIDE), np.linspace(0, 8, SIDE))
     waves = ((0.9, 1.1, 0.7), (2.3, 1.9, 0.3), (5.1, 4.7, 0.12))
-    y = sum(height * np.sin(a * x) * np.cos(b * z) for a, b, height in waves)
+    y = np.zeros_like(x)
+    for a, b, height in waves:
+        y += height * np.sin(a * x) * np.cos(b * z)
     lines = [
         f"v {vx:.6f} {vy:.6f} {vz:.6f}" for vx, vy, vz in zip(x.flat, y.flat, z.flat, strict=True)
     ]
