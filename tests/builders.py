@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from simmpp.common.units import LATEST_PS
 from simmpp.engine.capacity import needs_of
 from simmpp.machine.machine import (
     LEVELS,
@@ -24,6 +25,7 @@ from simmpp.machine.machine import (
     TestCost,
 )
 from simmpp.machine.torus import CONTENTIONS
+from simmpp.machine.uneven import Speeds, Straggler
 from simmpp.placement.placement import Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
@@ -293,14 +295,36 @@ def served(case: Case, service: str, seed: int) -> Case:
 
 
 def with_costs_of_today(machine: Machine, seed: int) -> Machine:
-    """The machine, in some cases with parts that have a tree of their own.
+    """The machine, in some cases with one or all of what makes computing uneven.
 
     Draws from a stream of its own, too.
     """
     rng = np.random.default_rng((seed, 19))
     if rng.random() < 0.3:
         machine = replace(machine, test=replace(machine.test, log2_ps=machine.latency_ps))
-    return machine
+    everything, nb = rng.random() < 0.1, machine.processors
+    changes: dict[str, Any] = {
+        "compute_startup_ps": machine.receive_startup_ps,
+        "least_tests": int(_pick(rng, (2, 7, 40))),
+        "speed": _speeds(rng, nb),
+        "noise": _pick(rng, ("1/20", "1/3", "1")),
+        "straggler": Straggler(int(rng.integers(nb)), "10/3", *_pick(rng, WHILES)),
+    }
+    is_drawn = {name: everything or rng.random() < 0.15 for name in changes}
+    return replace(machine, **{name: of for name, of in changes.items() if is_drawn[name]})
+
+
+WHILES = ((0, LATEST_PS), (100, 10**4), (10**6, 10**9))
+"""Times for which a PE is late."""
+
+
+def _speeds(rng: np.random.Generator, processors: int) -> Speeds:
+    """Of shares of the PEs, or of some of them."""
+    one, other = (str(_pick(rng, ("2", "1/2", "3", "5/7", "10000/9999"))) for _ in range(2))
+    if rng.random() < 0.5:
+        return ("30%", one), ("50%", other)
+    last = int(rng.integers(processors))
+    return ((f"0-{last}", one), *([(f"{last + 1}", other)] if last + 1 < processors else []))
 
 
 def random_placement(rng: np.random.Generator, workload: Workload, processors: int) -> Placement:

@@ -44,8 +44,9 @@ MACHINES = {"t3e": 16, "cpu-cluster": 16, "gpu-cluster": 16, "gpu-node": 8}
 """PEs of each."""
 BY_PE, BY_NIC = "pe", "nic"
 """Who serves requests."""
-LINKS = {"contention": "links"}
-"""Without it any number of gets would share a port at its full bandwidth each."""
+SAME = {"contention": "links", "compute_startup": 0, "least_tests": 0}
+"""Ports serve one at a time, or any number of gets would have the full bandwidth each; computing
+has no start, or the rays of a PE would be few for a GPU."""
 RAYS, EACH = 4096, 4
 USES = (1, 4, 16, 64, 256, 512)
 """Of an object by a PE: rays per fetch."""
@@ -68,13 +69,13 @@ Row = dict[str, Any]
 def machines() -> dict[str, Machine]:
     """By name: served by the PEs, then as the preset has it; on the T3E, by the network."""
     found = {
-        f"{name}, service {BY_PE}": machine(name, {"service": BY_PE, **LINKS}, nb)
+        f"{name}, service {BY_PE}": machine(name, {"service": BY_PE, **SAME}, nb)
         for name, nb in MACHINES.items()
     }
     for name, nb in MACHINES.items():
         own = machine(name, {}, nb).service
         service = own if own != BY_PE else BY_NIC
-        found[f"{name}, service {service}"] = machine(name, {"service": service, **LINKS}, nb)
+        found[f"{name}, service {service}"] = machine(name, {"service": service, **SAME}, nb)
     return found
 
 

@@ -208,7 +208,7 @@ def draw(table: Table) -> None:
                 axis.set_xticks([float(x) for x in FRACTIONS], ["2 %", "10 %", "25 %", "50 %"])
                 axis.minorticks_off()
                 axis.set_title(f"{scene}, {render}{', x kept' if kept else ''}", fontsize=8)
-        axes[0, 0].legend(fontsize=7)
+        axes[0, 0].legend(fontsize=7, loc=(0.55, 0.28))
         figure.supxlabel("share x of the scene on each PE", fontsize=9)
         figure.supylabel("time profit over object dataflow", fontsize=9)
         save(figure, HERE / "path")

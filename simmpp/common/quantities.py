@@ -56,6 +56,14 @@ _A_TIME = Expect(
     units.write_ps,
     "an integer of picoseconds",
 )
+_A_MOMENT = Expect(
+    units.A_TIME,
+    TIME,
+    "ps, ns, us, ms, s or min",
+    f"0 to {units.LATEST_PS // 10**12} s",
+    units.write_ps,
+    "an integer of picoseconds",
+)
 _A_SIZE = Expect(
     units.A_SIZE,
     SIZE,
@@ -73,6 +81,12 @@ _A_BANDWIDTH = Expect(
     "an integer of bytes per second, 0 for unlimited",
 )
 Time = Annotated[int, *_marks(units.picoseconds, _up_to(units.LONGEST_PS), _A_TIME)]
+Moment = Annotated[
+    int,
+    *_marks(
+        lambda value: units.picoseconds(value, units.LATEST_PS), _up_to(units.LATEST_PS), _A_MOMENT
+    ),
+]
 Size = Annotated[int, *_marks(units.byte_count, _up_to(units.MOST_BYTES), _A_SIZE)]
 Bandwidth = Annotated[
     int, *_marks(units.bytes_per_second, _up_to(units.MOST_BYTES_PER_S), _A_BANDWIDTH)

@@ -22,6 +22,8 @@ UNLIMITED = 0
 
 LONGEST_PS = 10 * 10**12
 """Longest cost of one thing, 10 s: the clock is int64 picoseconds and ends after 106 days."""
+LATEST_PS = 4 * 10**18
+"""Latest moment that can be named, 46 days: a run is stopped a week later."""
 MOST_BYTES = 10**17
 MOST_MW = 10**12
 """A gigawatt."""

@@ -231,6 +231,8 @@ def _other(point: Config, machine: Machine) -> str:
         return f"the topology is {machine.topology}"
     if machine.service != POLLED:
         return f"the service is {machine.service}"
+    if machine.is_uneven:
+        return "a machine has compute_startup, least_tests, speed, noise or straggler"
     return "there are islands" if point.settings.placement.islands > 1 else ""
 
 

@@ -24,7 +24,7 @@ from simmpp.common.sourced import Cited, values_of
 from simmpp.common.strict import Strict, in_words, structure
 from simmpp.common.units import shown
 from simmpp.common.yamlfile import Document, parse_yaml, yaml_text
-from simmpp.machine.constants import Constants
+from simmpp.machine.constants import UNLIKE, Constants
 from simmpp.machine.presets import Preset, preset_names
 from simmpp.machine.ranges import ranges_of, spans_of
 from simmpp.placement.placement import Memory, PlacementRules
@@ -35,14 +35,8 @@ _FOLDER = files("simmpp") / "config" / "readings"
 _SUFFIXES = (".yaml", ".yml")
 DESCRIPTION, BASE, MACHINE, POLICY = "description", "based_on", "machine", "policy"
 _NOT_IN_ONE: dict[str, tuple[str, ...]] = {
-    MACHINE: (
-        "shape",
-        "topology",
-        "levels",
-        "fat_tree",
-        "service",
-        "contention",
-    ),  # no costs, but choices
+    # no costs, but choices
+    MACHINE: ("shape", "topology", "levels", "fat_tree", "service", "contention", *UNLIKE),
     POLICY: ("name", "label", "file", "set"),  # a reading is no code
 }
 """Keys of a configuration that no reading sets."""

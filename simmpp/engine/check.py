@@ -13,6 +13,7 @@ from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import SERVICES, Machine
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import CONTENTIONS
+from simmpp.machine.uneven import check_unlike
 from simmpp.placement.placement import Placement
 from simmpp.workload.check import is_cut
 from simmpp.workload.workload import Workload
@@ -60,6 +61,8 @@ def _check_machine(machine: Machine) -> None:
     require_word(f"machine {machine.name}: service", machine.service, SERVICES)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
         raise ConfigError(f"machine {machine.name}: expected a quantum and a shape of at least 1")
+    require_whole(f"machine {machine.name}: least_tests", machine.least_tests, 0)
+    check_unlike(machine.speed, machine.noise, machine.straggler, machine.processors)
     topology_of(machine)  # looks itself
 
 

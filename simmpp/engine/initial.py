@@ -22,6 +22,7 @@ from simmpp.engine.arrays.records import (
 )
 from simmpp.engine.bounds import room_arrays
 from simmpp.engine.capacity import Needs
+from simmpp.engine.pe.pace import noise_array, pace_columns, pace_scalars
 from simmpp.engine.record.counters import first_width
 from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
@@ -33,7 +34,7 @@ from simmpp.engine.residency import (
     row_bytes,
 )
 from simmpp.engine.state import State
-from simmpp.machine.limits import CLOCK_LIMIT_PS
+from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.service import copies
 from simmpp.machine.topology import network_of, topology_of
@@ -79,26 +80,21 @@ def new_state(
         "record_counters": recording.counters,
         "record_hops": recording.hops,
         "record_ends": recording.ends,
-        "bin_width": first_width(_least_ps(workload, machine)),
+        "bin_width": first_width(least_ps(workload, machine)),
         "logs": recording.sink is not None,
     }
     scalars = {name: getattr(machine, name) for name in MACHINE}
     scalars |= _of_the_run(workload, machine, placement)
     scalars |= _of_the_policy(parameters, views, address_of)
-    scalars["random_key"] = key(seed, "policy")
+    scalars |= {"random_key": key(seed, "policy"), **pace_scalars(machine, seed)}
     state = State(arrays, scalars | flags, recording.sink)
+    for name, of_pes in pace_columns(machine).items():
+        state.pes[name] = of_pes
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
     _deal(state, placement)
     if recording.counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
-
-
-def _least_ps(workload: Workload, machine: Machine) -> int:
-    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
-    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
-    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
-    return total_ps // machine.processors
 
 
 def _sizes(
@@ -148,6 +144,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "owners": placement.owners,
         "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),
+        "noise_factors": noise_array(machine),
         "topology": network_of(topology),
         "free_ps": np.zeros(topology.n_links if machine.contention == LINKS else 0, np.int64),
     }

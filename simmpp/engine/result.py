@@ -1,13 +1,13 @@
 """What a run gives back: integers that add up.
 
-A further column of ``results.csv`` is a name in ``COLUMNS`` and a field or property of ``Result``;
+A further column of ``results.csv`` is a name in ``columns`` and a field or property of ``Result``;
 what has to be counted for it is declared in ``arrays.records`` and counted where it happens, in
 ``pe.step.note_peaks`` if it is the most that a PE holds of something.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,38 +18,13 @@ from simmpp.common.documented import documented
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import SINGLY
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
+from simmpp.machine.uneven import bound_of
 
-if TYPE_CHECKING:  # who only reads tables needs the names of the columns, and no numba
+if TYPE_CHECKING:  # who only reads results needs no numba
     from simmpp.engine.memory_use import MemoryUse
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
-
-COLUMNS = (
-    "makespan_ps",
-    "messages",
-    "request_messages",
-    "object_messages",
-    "ray_messages",
-    "load_messages",
-    "bytes_sent",
-    "rays",
-    "tests",
-    "rays_sent",
-    "objects_fetched",
-    "compute_ps",
-    "communication_ps",
-    "waiting_ps",
-    "peak_rays",
-    "peak_bytes",
-    "events",
-)
-"""Integers of a result, as in a row of ``results.csv``; times of PEs are sums over them."""
-SERVICE_COLUMNS = ("service_ps",)
-"""A further one, in rows of sweeps on machines whose threads serve."""
-PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_bytes")
-"""Further ones, in rows of sweeps in which a policy packs."""
-USER_COLUMNS = ("user_messages", "user_dropped")
-"""Likewise, in which a policy sends messages of its own."""
+    from simmpp.machine.machine import Machine
 
 
 @documented
@@ -78,7 +53,7 @@ class Result(Displayed):
     rays_sent: int
     """Rays moved by messages."""
     compute_ps: NDArray[np.int64]
-    """(nb,) int64: time of each PE in tests and rays."""
+    """(nb,) int64: time of each PE in computing: tests and rays, and what launch_ps says."""
     communication_ps: NDArray[np.int64]
     """(nb,) int64: startups, packing, unpacking, probes."""
     waiting_ps: NDArray[np.int64]
@@ -97,6 +72,12 @@ class Result(Displayed):
     """Messages of the policy's own that were sent."""
     user_dropped: int = 0
     """Further ones that were not: too many, or to nobody."""
+    launch_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(nb,) int64: of compute_ps, startups of computing, and what lanes left empty add."""
+    work_ps: int = 0
+    """What all tests and rays cost: T(1), the makespan of one PE that holds everything."""
+    bound_ps: int = 0
+    """That over the sum of all PEs' speeds (nb where all have 1), rounded up."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     memory: MemoryUse | None = None
@@ -188,10 +169,13 @@ def concluded(
     engine: str,
     log: NDArray[np.void] | None,
     use: MemoryUse | None,
+    machine: Machine,
+    work_ps: int | None = None,
 ) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing.
 
     A run that could not be brought to its end has no makespan: the time is that of its last event.
+    Without ``work_ps``, that of a machine that is not uneven, PEs have computed nothing else.
     """
     makespan_ps = state["last_ray_ps"]
     if state.infeasible:
@@ -201,6 +185,7 @@ def concluded(
     late_ps = np.maximum(state.pes["served_until_ps"] - makespan_ps, 0)
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
+    work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
     (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
     sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
@@ -227,6 +212,9 @@ def concluded(
         events=state["activities"] + arrivals,
         user_messages=user_messages,
         user_dropped=state["user_dropped"],
+        launch_ps=state.pes["launch_ps"].copy(),
+        work_ps=work_ps,
+        bound_ps=bound_of(work_ps, machine.speed, machine.processors),
         rules_never_fired=_never_fired(state, parts_by_kind),
         memory=use,
         log=log,

@@ -18,7 +18,7 @@ from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import starved
-from simmpp.machine.limits import beyond_the_clock, check_counters
+from simmpp.machine.limits import beyond_the_clock, check_counters, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
@@ -89,7 +89,8 @@ def simulate(
     state.close_log()
     rows = collector.rows() if record.log is True else None
     use = memory_use(state, placement.capacity, needs)
-    return concluded(state, run.arrivals, policy.title, engine, rows, use)
+    work_ps = total_compute_ps(workload, machine) if machine.is_uneven else None
+    return concluded(state, run.arrivals, policy.title, engine, rows, use, machine, work_ps)
 
 
 def _check(

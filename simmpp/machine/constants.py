@@ -29,12 +29,15 @@ from simmpp.machine.machine import (
     TestCost,
 )
 from simmpp.machine.messages import COPIED_KINDS
+from simmpp.machine.uneven import A_SPEED, Factor, Speeds, Straggler, named_pes
 
 OTHERS = ("name", "sources")
 """Fields of a Machine that no user sets."""
 _KINDS = ("A request for an object.", "An object.", "A batch of rays.", "The sender's load alone.")
 """In the order of COPIED_KINDS."""
 _WORDS = ("topology", "service", "contention")
+UNLIKE = ("speed", "noise", "straggler")
+"""What makes PEs, or moments, unlike others: no constants of a product."""
 _NAME = re.compile("[A-Za-z][A-Za-z0-9_-]{0,30}")
 _LEVELS = "the blocks from the inside out by a name for each, such as node, group, system"
 
@@ -103,6 +106,9 @@ TestConstants: Any = create_model("TestConstants", __base__=Strict, **optional_f
 FatTreeConstants: Any = create_model(
     "FatTreeConstants", __base__=Strict, **optional_fields(FatTree, {})
 )
+StragglerConstants: Any = create_model(
+    "StragglerConstants", __base__=Strict, **optional_fields(Straggler, {})
+)
 LevelConstants: Any = create_model("LevelConstants", __base__=Strict, **optional_fields(Level, {}))
 _NESTED = {
     Copies: (CopiesConstants, CopiesConstants()),
@@ -115,6 +121,8 @@ _NESTED = {
         None,
     ),
     FatTree: (FatTreeConstants | None, None),
+    Speeds: (Annotated[dict[str, Factor] | None, parsed_by(named_pes), Expect(A_SPEED)], None),
+    Straggler: (StragglerConstants | None, None),
 }
 _All: Any = create_model("_All", __base__=Strict, **optional_fields(Machine, _NESTED))
 
@@ -129,6 +137,8 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
         """
         given = _numbers(self, "")
         for key, value in self:
+            if key in UNLIKE:
+                continue
             if isinstance(value, CopiesConstants):
                 for kind in COPIED_KINDS:
                     given |= _numbers(value, f"{key}.{kind}.")
@@ -143,6 +153,25 @@ class Constants(_All):  # type: ignore[misc]  # mypy can't know fields that are 
     def words(self) -> dict[str, str]:
         """The choices that are made: ``contention``, ``topology``, ``service``."""
         return {key: value for key, value in self if key in _WORDS and value is not None}
+
+    def unlike(self) -> dict[str, Any]:
+        """Those of UNLIKE that are given, as ``Machine`` has them.
+
+        Raises ConfigError for a straggler without a factor.
+        """
+        found = {key: value for key, value in self if key in UNLIKE and value is not None}
+        if "speed" in found:
+            found["speed"] = tuple(found["speed"].items())
+        if "straggler" in found:
+            found["straggler"] = _straggler(found["straggler"])
+        return found
+
+
+def _straggler(given: Any) -> Straggler:
+    if given.factor is None:
+        raise ConfigError("missing key 'factor'", where="straggler")
+    numbers = _arguments(Straggler, _numbers(given, ""), "")
+    return Straggler(**numbers, factor=given.factor)
 
 
 def _numbers(model: Strict, prefix: str) -> dict[str, int]:

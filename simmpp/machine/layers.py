@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import in_words
@@ -33,6 +34,8 @@ class Layers:
     """By the same keys."""
     words: dict[str, str] = field(default_factory=lambda: {"topology": TORUS, "service": POLLED})
     """The choices."""
+    unlike: dict[str, Any] = field(default_factory=dict)
+    """``speed``, ``noise``, ``straggler``: each as the last layer that speaks of it says."""
     ranges: dict[str, tuple[int, int]] = field(default_factory=dict)
     """Of those that may be off, by the same keys."""
     level_names: tuple[str, ...] = ()
@@ -49,6 +52,7 @@ class Layers:
         """A further layer. Levels of names that are known change these, others replace all."""
         self.words |= {"topology": implied(constants) or self.words["topology"]}
         self.words |= constants.words()
+        self.unlike |= (unlike := constants.unlike())
         names = tuple(constants.levels or ())
         if not set(names) <= set(self.level_names):
             self.level_names = names
@@ -61,7 +65,7 @@ class Layers:
             if given.get(key) and not given.get(other):
                 given[other], cited[other] = 0, cited[key]
         self.numbers |= given
-        self.sources |= cited
+        self.sources |= cited | {key: source_of(key) for key in unlike}
         of_others = {key: ends for key, ends in self.ranges.items() if key not in given}
         self.ranges = of_others | dict(ranges)
 

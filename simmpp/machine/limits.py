@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import floor
+
 import numpy as np
 
 from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import Machine
+from simmpp.machine.noise import ONE, factors
 from simmpp.machine.topology import topology_of
 from simmpp.machine.transfer import PS_PER_S, slower
+from simmpp.machine.uneven import bound_of, speeds_of, total_speed
 from simmpp.workload.workload import Workload
 
 CLOCK_LIMIT_PS = 1 << 62
@@ -29,6 +34,19 @@ def total_compute_ps(workload: Workload, machine: Machine) -> int:
     return int(tests @ machine.test.of_objects(workload)) + workload.n_rays * machine.ray_ps
 
 
+def bound_ps(workload: Workload, machine: Machine) -> int:
+    """T(1) / the sum of all PEs' speeds, rounded up: none can be faster, but by luck with noise."""
+    return bound_of(total_compute_ps(workload, machine), machine.speed, machine.processors)
+
+
+def least_ps(workload: Workload, machine: Machine) -> int:
+    """No run takes less: all rays, and all tests as if of the cheapest object, on all PEs."""
+    test_ps = int(machine.test.of_objects(workload).min(initial=CLOCK_LIMIT_PS))
+    total_ps = workload.n_rays * machine.ray_ps + workload.n_tests * test_ps
+    least = Fraction(factors(machine.noise)[0], ONE)
+    return floor(total_ps * least / total_speed(machine.speed, machine.processors))
+
+
 def check_counters(workload: Workload, machine: Machine) -> None:
     """Raise ConfigError if a run could wrap its clock or its counters of bytes.
 
@@ -36,9 +54,11 @@ def check_counters(workload: Workload, machine: Machine) -> None:
     activity and no single flight takes half of the clock. Bounds, in Python's integers.
     """
     longest_test_ps = float(machine.test.of_objects(workload, np.float64).max(initial=0))
-    bound_ps = workload.n_tests * longest_test_ps + workload.n_rays * machine.ray_ps
-    if bound_ps >= CLOCK_LIMIT_PS:
+    most_ps = workload.n_tests * longest_test_ps + workload.n_rays * machine.ray_ps
+    if most_ps >= CLOCK_LIMIT_PS:
         total_compute_ps(workload, machine)  # looks closer
+    if machine.is_uneven and _longest_go_ps(workload, machine) >= CLOCK_LIMIT_PS:
+        raise beyond_the_clock()
     if max(_longest_dispatch_ps(workload, machine), _longest_flight_ps(workload, machine)) > (
         CLOCK_LIMIT_PS // 2
     ):
@@ -50,6 +70,15 @@ def check_counters(workload: Workload, machine: Machine) -> None:
         raise ConfigError(
             f"the bytes sent or held could exceed {MOST_BYTES}: expected smaller rays and objects"
         )
+
+
+def _longest_go_ps(workload: Workload, machine: Machine) -> float:
+    """No go at computing takes longer: all of it, on the slowest PE, with lanes left empty."""
+    test_ps = machine.test.of_objects(workload, np.float64).max(initial=0)
+    cost_ps = total_compute_ps(workload, machine) + machine.least_tests * float(test_ps)
+    slowest = max(1 / min(speeds_of(machine.speed, machine.processors)), Fraction(1))
+    factor = slowest * Fraction(machine.straggler.factor) * max(factors(machine.noise)) / ONE
+    return machine.compute_startup_ps + cost_ps * float(factor)
 
 
 def _largest_object_bytes(workload: Workload) -> int:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from simmpp.common.strict import expectation, fields_of, inner_class, is_by_name
+from simmpp.common.units import write_ps
 from simmpp.machine.constants import Constants
 from simmpp.machine.layers import Layers
 from simmpp.machine.messages import COPIED_KINDS
 from simmpp.machine.ranges import Known
+from simmpp.machine.uneven import Straggler
 
 
 class Line(NamedTuple):
@@ -26,7 +29,18 @@ class Line(NamedTuple):
 def lines_of(layers: Layers) -> list[Line]:
     """All constants; copies of all kinds of messages are one line where they are alike."""
     lines = [_line(key, known) for key, known in layers.known.items()]
-    return list(_joined(lines))
+    unlike = [Line(key, _told(of), "", layers.sources[key]) for key, of in layers.unlike.items()]
+    return [*_joined(lines), *unlike]
+
+
+def _told(unlike: Any) -> str:
+    """A speed, noise or straggler, much as users write it."""
+    if isinstance(unlike, tuple):
+        return ", ".join(f"{pes}: {speed}" for pes, speed in unlike)
+    if isinstance(unlike, Straggler):
+        moments = (write_ps(ps) for ps in (unlike.from_ps, unlike.to_ps))
+        return f"PE {unlike.pe}, {unlike.factor} times, {' to '.join(moments)}"
+    return f"{float(Fraction(unlike)):g}"
 
 
 def _line(key: str, known: Known) -> Line:

@@ -17,10 +17,9 @@ from simmpp.common.documented import documented
 from simmpp.common.quantities import Bandwidth, Power, Price, Size, Time
 from simmpp.common.strict import Expect, integer, one_of, only
 from simmpp.common.units import UNLIMITED as UNLIMITED
+from simmpp.machine.uneven import MOST_PROCESSORS as MOST_PROCESSORS
+from simmpp.machine.uneven import NOBODY, Noise, Speeds, Straggler
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
-
-MOST_PROCESSORS = 65536
-"""PEs of the largest torus of the presets: Blue Gene/L."""
 
 
 def is_shape(value: object) -> bool:
@@ -183,6 +182,19 @@ class Machine:
     """Set-up and shading of one ray."""
     quantum: Annotated[int, *integer(1, 2**31 - 1, "tests")]
     """Tests that a PE computes at most before it looks into its inbox."""
+    compute_startup_ps: Time = 0
+    """Cost of beginning to compute, whenever a PE does: the launch of a kernel."""
+    least_tests: Annotated[int, *integer(0, 2**31 - 1, "tests")] = 0
+    """Fewer tests at one go take as long as that many of their mean cost, and their rays are
+    finished at the end: the lanes of an accelerator."""
+    speed: Speeds = ()
+    """Tests and rays take what they cost / speed; that of others is 1. By PEs, or by shares of them
+    in turn: {25%: 2} is the first quarter."""
+    noise: Noise = "0"
+    """A go at computing takes a factor as long that is drawn with the seed: lognormal, with a mean
+    of 1; the noise is the deviation of its logarithm."""
+    straggler: Straggler = NOBODY
+    """A PE that is late for a while."""
     topology: Annotated[str, *one_of(*TOPOLOGY_NAMES)] = TORUS
     """How PEs are joined: the way that `levels` or `fat_tree` says where one is given, else the
     preset's."""
@@ -223,7 +235,14 @@ class Machine:
     @property
     def uses(self) -> tuple[str, ...]:
         """What its rows have columns of their own for."""
-        return ("threads",) if self.service == THREAD else ()
+        uses = {"threads": self.service == THREAD, "is uneven": self.is_uneven}
+        return tuple(use for use, it_does in uses.items() if it_does)
+
+    @property
+    def is_uneven(self) -> bool:
+        """Does computing take anything else than the sum of what tests and rays cost?"""
+        plain = self.compute_startup_ps == self.least_tests == 0 and not self.speed
+        return not (plain and self.noise == "0" and self.straggler == NOBODY)
 
     @property
     def processors(self) -> int:

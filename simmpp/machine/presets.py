@@ -29,6 +29,7 @@ from simmpp.machine.machine import MOST_PROCESSORS, TORUS, Machine, Shape, is_sh
 from simmpp.machine.ranges import Known, Ranges, known_of, ranges_of, spans_of, written
 from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import default_shape
+from simmpp.machine.uneven import check_unlike
 
 _FOLDER = files("simmpp") / "machine" / "presets"
 OVERRIDDEN = "set by you"
@@ -66,7 +67,9 @@ class Preset:
         return self.texts.get(key) or (write(numbers[key]) if key in numbers else "")
 
     def source(self, key: str) -> str:
-        """Of a constant."""
+        """Of a constant; of a whole that is told part by part, whoever tells."""
+        if any(cited.startswith(f"{key}.") for cited in self.sources):
+            return OVERRIDDEN
         return self.sources[self.written(key)]
 
     def written(self, key: str) -> str:
@@ -160,9 +163,11 @@ def machine(
         shape=_shape(processors, overrides.shape if shape is None else shape, layers.words),
         levels=layers.levels(),
         **layers.words,
+        **layers.unlike,
         sources=layers.sources,
     )
     topology_of(made)  # refuses what can't be
+    check_unlike(made.speed, made.noise, made.straggler, made.processors)
     return made
 
 

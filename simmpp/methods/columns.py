@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from simmpp.engine import memory_use, result
+from simmpp.engine import columns, memory_use
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
 KEYS = (*PLACE, "effective_fraction", "policy", "seed")
 METHOD = "method"
 """A key as well where a sweep changes it."""
-NUMBERS = result.COLUMNS
+NUMBERS = columns.COLUMNS
 """Integers of a run; empty where the method does not know."""
 BOUNDED = "bounded"
 """The memory of PEs has a capacity."""
 BY_USE = {
-    "packs": result.PACKED_COLUMNS,
-    "talks": result.USER_COLUMNS,
-    "threads": result.SERVICE_COLUMNS,
+    "packs": columns.PACKED_COLUMNS,
+    "talks": columns.USER_COLUMNS,
+    "threads": columns.SERVICE_COLUMNS,
+    "is uneven": columns.UNEVEN_COLUMNS,
     BOUNDED: memory_use.COLUMNS,
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,

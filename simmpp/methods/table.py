@@ -28,8 +28,8 @@ class Method:
     uses_engine: bool = True
     """It runs an event loop."""
     knows_papers_machine_alone: bool = False
-    """It has no meaning for machines whose PEs are joined, or requests served, otherwise, nor for
-    islands."""
+    """It has no meaning for machines whose PEs are joined, or requests served, otherwise, or which
+    compute unevenly, nor for islands."""
     most_seeds: int | None = 1
     """Seeds at most that ``simmpp bench`` tries it with; None for as many as it simulates."""
 

@@ -9,8 +9,8 @@ import numpy as np
 from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import CopyCost, Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
-from simmpp.machine.topology import require_torus
 from simmpp.machine.transfer import PS_PER_S, transfer_ps
+from simmpp.model.known import require_known
 from simmpp.workload.workload import Workload
 
 
@@ -67,9 +67,10 @@ def costs_of(machine: Machine, workload: Workload) -> Costs:
     The model knows one size of object and one cost of a test: the means over the tests of the
     workload, which are exact where all objects are alike.
 
-    Raises ConfigError off the torus: the paper has one cost for a message to any PE.
+    Raises ConfigError off the torus, where the paper has one cost for a message to any PE, and
+    where computing is uneven.
     """
-    require_torus(machine)
+    require_known(machine)
     uses = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
     n_tests = max(int(uses.sum()), 1)
     object_bytes = float(uses @ workload.object_bytes.astype(np.float64)) / n_tests

@@ -25,8 +25,8 @@ from simmpp.common.errors import ConfigError
 from simmpp.machine.limits import CLOCK_LIMIT_PS, beyond_the_clock, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
-from simmpp.machine.topology import require_torus
 from simmpp.machine.transfer import transfer_ps
+from simmpp.model.known import require_known
 from simmpp.model.lockstep import steps_of
 from simmpp.model.synchronous_step import World, needs, new_step, next_rays, object_step, ray_step
 from simmpp.placement.placement import Placement
@@ -64,7 +64,7 @@ def synchronous(
     Raises ConfigError for more than MOST_PROCESSORS, off the torus, for islands, or if tests and
     messages may exceed the clock.
     """
-    require_torus(machine)
+    require_known(machine)
     if placement.islands > 1:
         raise ConfigError("the formulas know no islands: expected placement.islands 1")
     _check_processors(machine.processors)

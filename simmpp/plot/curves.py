@@ -10,6 +10,7 @@ LOG_MARGIN = 1.2
 
 PART_COLOURS = {
     "compute": 0,
+    "launches": 7,
     "communication": 1,
     "startups": 1,
     "copying": 4,

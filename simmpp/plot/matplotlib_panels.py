@@ -44,6 +44,7 @@ PART_STYLES: tuple[dict[str, Any], ...] = (
     {"facecolor": "#f3cfa0"},
     {"facecolor": "#b3423a", "hatch": "...."},
     {"facecolor": "#7f93a6", "hatch": "xxxx"},
+    {"facecolor": "#7fc4ae", "hatch": "||||"},
 )
 """Of parts of bars, by the number of their colour: they differ in lightness too."""
 WIDTH_IN, HEIGHT_IN, DOTS_PER_INCH, SCREEN_DOTS_PER_INCH = 6.3, 4.1, 200, 96

@@ -25,7 +25,13 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import refuse_special, write_text
 from simmpp.common.units import shown
 from simmpp.policy.endless import counted
-from simmpp.policy.mistakes import line_in, note_copy, refuse_unknown_fields
+from simmpp.policy.mistakes import (
+    line_in,
+    line_of_argument,
+    note_copy,
+    refuse_unknown_fields,
+    unknown_like,
+)
 from simmpp.policy.policy import Hook, Policy
 from simmpp.policy.reads import functions_of, globals_of
 
@@ -151,6 +157,8 @@ def _policy_in(text: str, where: str) -> Policy:
     policy = getattr(module, OBJECT, None)
     if not isinstance(policy, Policy):
         raise ConfigError(f"expected {OBJECT} = Policy(...)", where=where)
+    if unlike := unknown_like(policy):
+        raise ConfigError(unlike, where=where, line=line_of_argument(text, "like"))
     for hook in policy.hooks.values():
         refuse_unknown_fields(hook, policy, where)
     return policy

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import dis
 import re
 import traceback
@@ -12,7 +13,10 @@ from numba.core.errors import NumbaError
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import unknown
+from simmpp.common.strict import in_words
+from simmpp.common.units import shown
 from simmpp.policy.policy import Hook, Policy
+from simmpp.policy.table import POLICIES
 from simmpp.policy.view import View
 
 
@@ -23,6 +27,21 @@ def refuse_unknown_fields(hook: Hook, policy: Policy, where: str) -> None:
         if name not in known:
             problem = unknown(name, sorted(known)).replace("unknown key", "the view has no", 1)
             raise ConfigError(f"{hook.__name__}: {problem}", where=where, line=line)
+
+
+def unknown_like(policy: Policy) -> str | None:
+    """What is wrong with the policy that one says it is like; None: nothing."""
+    if policy.like == "" or (isinstance(policy.like, str) and policy.like in POLICIES):
+        return None
+    expected = f"value {shown(policy.like)}: expected {in_words(tuple(POLICIES))}"
+    return f"policy {policy.name!r}: like: {expected}"
+
+
+def line_of_argument(text: str, name: str) -> int | None:
+    """The first line of a source where a function is given an argument of that name."""
+    calls = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call))
+    given = (word.value.lineno for call in calls for word in call.keywords if word.arg == name)
+    return min(given, default=None)
 
 
 def _fields_of(hook: Hook) -> Iterator[tuple[str, int | None]]:

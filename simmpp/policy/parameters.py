@@ -1,18 +1,13 @@
-"""The policies, and what a user sets of one: its name and the numbers that its hooks read.
-
-A further policy is a file like ``concurrent``, a line in POLICIES, and a field of PolicyParameters
-for each number of its own.
-"""
+"""What a user sets of a policy: its name, the numbers that its hooks read, and what it is told."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import (
     AliasPath,
     Field,
-    InstanceOf,
     SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
@@ -24,112 +19,57 @@ from pydantic_core import ArgsKwargs
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.places import unknown
-from simmpp.common.quantities import TIME, Time
+from simmpp.common.quantities import Time
 from simmpp.common.strict import (
-    Expect,
-    Short,
     Switch,
     Text,
     declared,
     in_words,
-    integer,
     mistake,
     parsed_by,
 )
 from simmpp.common.units import shown
-from simmpp.common.validate import MOST_COUNT
-from simmpp.policy.concurrent import CONCURRENT_DATAFLOW
-from simmpp.policy.cost import COST
 from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
-from simmpp.policy.holders import HOLDERS
-from simmpp.policy.object_dataflow import OBJECT_DATAFLOW
+from simmpp.policy.mistakes import unknown_like
 from simmpp.policy.policy import Packing, Policy
-from simmpp.policy.ray_dataflow import RAY_DATAFLOW
-from simmpp.policy.replicated import REPLICATED
+from simmpp.policy.table import CEILING as CEILING
+from simmpp.policy.table import CLASSICAL as CLASSICAL
+from simmpp.policy.table import DEFAULT_POLICY as DEFAULT_POLICY
+from simmpp.policy.table import POLICIES as POLICIES
+from simmpp.policy.table import REFERENCE as REFERENCE
+from simmpp.policy.written import NAME as NAME
 from simmpp.policy.written import (
-    FILE,
-    LOAD_INFO,
-    MIN_LOAD,
     NEVER,
     NEVER_PS,
-    NUMBERS,
+    KnownLoads,
     LoadInfo,
+    MinLoad,
+    OwnName,
+    OwnNumbers,
+    OwnPolicy,
+    PolicyName,
+    RayCount,
     own_policy,
-    parse_load,
-    parse_load_info,
-    parse_min_load,
-    parse_numbers,
     parse_period,
 )
-
-POLICIES: dict[str, Policy] = {
-    "object": OBJECT_DATAFLOW,
-    "ray": RAY_DATAFLOW,
-    "concurrent": CONCURRENT_DATAFLOW,
-    "replicated": REPLICATED,
-    "holders": HOLDERS,
-    "cost": COST,
-}
-REFERENCE, CEILING = "object", "replicated"
-"""Run with every point: what profits are measured against, and no dataflow at all."""
-CLASSICAL = ("object", "ray")
-"""The dataflows that the paper joins; the faster of them is what a further one has to beat."""
-DEFAULT_POLICY = "concurrent"
-"""What a configuration that names none compares with object dataflow."""
-
-
-class _OwnName(str):
-    """The name of a policy that a file gives."""
-
-
-def _name(value: object) -> object:
-    """One of the package's policies, as there are then: Python may add some."""
-    if isinstance(value, _OwnName):
-        return str(value)
-    if not isinstance(value, str) or value not in POLICIES:
-        raise ConfigError(f"value {shown(value)}: expected {in_words(tuple(POLICIES))}")
-    return value
-
-
-NAME = Short(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
-"""A policy's name alone is short for it."""
-_RAYS = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
-_MIN_LOAD_SCHEMA = {"anyOf": [_RAYS, {"type": "string", "pattern": "[%/]"}]}
-_REFRESH_SCHEMA = {
-    "type": "object",
-    "properties": {"refresh": TIME},
-    "required": ["refresh"],
-    "additionalProperties": False,
-}
-_NAMES = parsed_by(_name), Expect(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
-_OWN = Expect(FILE, {"type": "string", "minLength": 1})
-RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
 
 
 @declared
 class PolicyParameters:
     """One policy of a run. A rule that a policy does not have ignores its parameters."""
 
-    name: Annotated[str, *_NAMES] = DEFAULT_POLICY
+    name: PolicyName = DEFAULT_POLICY
     """The dataflow."""
     label: Text | None = None
     """Name in tables and rows; the policy's name when not given."""
-    min_load: Annotated[
-        Fraction | int,
-        parsed_by(parse_min_load, parse_load),
-        Expect(MIN_LOAD, _MIN_LOAD_SCHEMA, "% or rays"),
-    ] = Fraction(12, 100)
+    min_load: MinLoad = Fraction(12, 100)
     """The paper's minimal load, above which rays may be sent (concurrent)."""
     batch: RayCount = 256
     """Rays for one owner that are sent together, unless there is nothing else to do."""
     ask_at_least: RayCount = 32
     """The paper's sufficient count: rays waiting for an object before it is asked for
     (concurrent)."""
-    load_info: Annotated[
-        LoadInfo,
-        parsed_by(parse_load_info),
-        Expect(LOAD_INFO, {"anyOf": [{"enum": list(get_args(LoadInfo))}, _REFRESH_SCHEMA]}),
-    ] = "piggyback"
+    load_info: KnownLoads = "piggyback"
     """How a PE knows the load of others: from headers (the paper), exactly, or not at all; with
     `refresh`, its own load is also sent to peers that were sent nothing for that long; `sampled`:
     all know all loads as they were at the last multiple of that time (or `never` but at the
@@ -150,16 +90,10 @@ class PolicyParameters:
     """What goes to one PE at one dispatch in one message: nothing, its requests (and the answers to
     them), or all, rays with requests (the mixed dataflow of Nebel 1997)."""
 
-    file: Annotated[
-        InstanceOf[PolicyFile] | InstanceOf[Policy] | None, parsed_by(own_policy), _OWN
-    ] = None
+    file: OwnPolicy = None
     """A policy of one's own in place of a `name`: a Python file with `POLICY = Policy(...)`, which
     is run (see `simmpp policy`)."""
-    set: Annotated[
-        tuple[tuple[str, int], ...] | None,
-        parsed_by(parse_numbers),
-        Expect(NUMBERS, {"type": "object"}),
-    ] = None
+    set: OwnNumbers = None
     """The policy's own numbers that are not to be what its file says."""
 
     if TYPE_CHECKING:  # arguments take more than fields hold
@@ -194,7 +128,7 @@ class PolicyParameters:
         policy = _policy(own)
         if keys.get("name", policy.name) != policy.name or policy.name in POLICIES:
             return given
-        named = {**keys, "file": own, "name": _OwnName(policy.name)}
+        named = {**keys, "file": own, "name": OwnName(policy.name)}
         return ArgsKwargs(given.args, named) if isinstance(given, ArgsKwargs) else named
 
     @field_validator("sample_ps")
@@ -219,6 +153,8 @@ class PolicyParameters:
             if name in POLICIES:
                 raise mistake(f"its policy is called {name!r}: expected no name of the package's")
             raise mistake(f"its policy is called {name!r}: expected no other name beside it")
+        if file is not None and (problem := unknown_like(_policy(file))):
+            raise mistake(problem)
         if file is not None and "packing" in others.data:
             _refuse_packing(others.data["packing"], _policy(file))
         return file

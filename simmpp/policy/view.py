@@ -109,6 +109,10 @@ class View:
     words: MutableSequence[int]
     """(4,) of a message of the policy's own: ``heard`` those that came, ``idle`` 0; for the hook to
     write those that it sends."""
+    speed: int
+    """Tests that this PE makes in the time of 1000 on one of speed 1 (`machine.speed`)."""
+    other_speed: int
+    """Likewise the other; ``idle``: 0."""
 
     if TYPE_CHECKING:
 
@@ -116,7 +120,7 @@ class View:
             """One of the policy's own numbers."""
 
 
-SELF, LOADS, WAY, OBJECT, RANDOM, DONE, WANTED = (1 << n for n in range(7))
+SELF, LOADS, WAY, OBJECT, RANDOM, DONE, WANTED, SPEEDS = (1 << n for n in range(8))
 GROUPS = {
     SELF: ("now_ps", "me", "ready", "held_bytes"),
     LOADS: ("known_load", "age_ps", "in_flight"),
@@ -125,5 +129,6 @@ GROUPS = {
     RANDOM: ("random",),
     DONE: ("finished", "busy_ps", "compute_ps", "fetched", "released"),
     WANTED: ("objects", "fetch_ps", "fetch_flight_ps"),
+    SPEEDS: ("speed", "other_speed"),
 }
 """Fields that are looked up together, if a hook reads any of them; the others always are there."""

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from contextlib import suppress
 from fractions import Fraction
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
+
+from pydantic import InstanceOf
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.strict import is_line
+from simmpp.common.quantities import TIME
+from simmpp.common.strict import Expect, Short, in_words, integer, is_line, parsed_by
 from simmpp.common.units import byte_count, picoseconds, share, shown
 from simmpp.common.validate import MOST_COUNT, whole
 from simmpp.policy.file import PolicyFile, read_policy
 from simmpp.policy.policy import Policy
+from simmpp.policy.table import POLICIES
 
 LoadInfo = Literal["piggyback", "exact", "none", "sampled", "two"]
 
@@ -93,3 +97,49 @@ def _number(name: str, value: object) -> int:
         with suppress(ConfigError):
             return int(read(value))
     raise ConfigError(f"{name}: value {shown(value)}: expected a whole number, a time or a size")
+
+
+class OwnName(str):
+    """The name of a policy that a file gives."""
+
+
+def _name(value: object) -> object:
+    """One of the package's policies, as there are then: Python may add some."""
+    if isinstance(value, OwnName):
+        return str(value)
+    if not isinstance(value, str) or value not in POLICIES:
+        raise ConfigError(f"value {shown(value)}: expected {in_words(tuple(POLICIES))}")
+    return value
+
+
+# --- what these make fields of settings ---
+
+NAME = Short(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
+"""A policy's name alone is short for it."""
+PolicyName = Annotated[
+    str, parsed_by(_name), Expect(in_words(tuple(POLICIES)), {"enum": list(POLICIES)})
+]
+RayCount = Annotated[int, *integer(1, MOST_COUNT, "rays")]
+_RAYS = {"type": "integer", "minimum": 0, "maximum": MOST_COUNT}
+MinLoad = Annotated[
+    Fraction | int,
+    parsed_by(parse_min_load, parse_load),
+    Expect(MIN_LOAD, {"anyOf": [_RAYS, {"type": "string", "pattern": "[%/]"}]}, "% or rays"),
+]
+_PERIODS = {"refresh": TIME, "sampled": {"anyOf": [TIME, {"const": NEVER}]}}
+_WITH_PERIOD = [
+    {"type": "object", "properties": {key: of}, "required": [key], "additionalProperties": False}
+    for key, of in _PERIODS.items()
+]
+_INFO = {"anyOf": [{"enum": list(get_args(LoadInfo))}, *_WITH_PERIOD]}
+KnownLoads = Annotated[LoadInfo, parsed_by(parse_load_info), Expect(LOAD_INFO, _INFO)]
+OwnPolicy = Annotated[
+    InstanceOf[PolicyFile] | InstanceOf[Policy] | None,
+    parsed_by(own_policy),
+    Expect(FILE, {"type": "string", "minLength": 1}),
+]
+OwnNumbers = Annotated[
+    tuple[tuple[str, int], ...] | None,
+    parsed_by(parse_numbers),
+    Expect(NUMBERS, {"type": "object"}),
+]

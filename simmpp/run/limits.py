@@ -2,7 +2,9 @@
 
 The time of all PEs together, nb x makespan, is told in parts that add up to it exactly:
 
-- *compute*: tests and rays. That is the bound, which no way of sending messages changes.
+- *compute*: tests and rays. That is the bound, which no way of sending messages changes, but who
+  computes where speeds differ.
+- *launches*: startups of computing, and what lanes of an accelerator add that are left empty.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
   unpacking included; with a thread what the PEs pay.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
@@ -31,16 +33,19 @@ from typing import Any
 
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
+from simmpp.machine.messages import RAYS, REQUEST
 from simmpp.machine.service import fixed_costs
 from simmpp.machine.transfer import PS_PER_S
 from simmpp.methods.simulation import integers
 from simmpp.run.flights import mean_flight
 
-COMPUTE, STARTUPS, COPYING = "compute", "startups", "copying"
+COMPUTE, LAUNCHES = "compute", "launches"
+STARTUPS, COPYING = "startups", "copying"
 HOT, IMBALANCE, LATENCY, BANDWIDTH = "one hot PE", "imbalance", "latency", "bandwidth"
 COMMUNICATION, WAITING = "communication", "waiting"
 """Startups and copying; the four that follow them."""
-PARTS = (COMPUTE, STARTUPS, COPYING, COMMUNICATION, HOT, IMBALANCE, LATENCY, BANDWIDTH, WAITING)
+SENT = (STARTUPS, COPYING, COMMUNICATION)
+PARTS = (COMPUTE, LAUNCHES, *SENT, HOT, IMBALANCE, LATENCY, BANDWIDTH, WAITING)
 KINDS = ("request", "object", "ray", "load")
 NEAR_THE_BOUND = 0.9
 """Share of compute from which little else is left to be gained."""
@@ -121,7 +126,11 @@ def limits_of(
     sent = _sent(numbers, processors, costs)
     waits = _waits(numbers, processors, costs, compute_ps, communication_ps)
     is_owner = _owners_are_hot(numbers, compute_ps, communication_ps)
-    return Limits({COMPUTE: numbers["compute_ps"], **sent, **waits}, _help(numbers, is_owner))
+    launch_ps = numbers.get("launch_ps") or 0
+    computing = {COMPUTE: numbers["compute_ps"] - launch_ps}
+    if launch_ps:
+        computing[LAUNCHES] = launch_ps
+    return Limits({**computing, **sent, **waits}, _help(numbers, is_owner))
 
 
 def together(of_seeds: Iterable[Limits]) -> Limits:
@@ -141,6 +150,9 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
     counts = (numbers[f"{kind}_messages"] for kind in KINDS)
     each_ps = sum(n * each for n, each in zip(counts, costs.startups_ps, strict=True))
+    # One of a policy's own is sent as rays are, and copied as a request is.
+    own_ps = costs.startups_ps[RAYS] + costs.fixed_ps[REQUEST]
+    each_ps += (numbers.get("user_messages") or 0) * own_ps
     startups_ps = min(total_ps, each_ps + fixed_ps)
     return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
 
@@ -195,6 +207,7 @@ def _help(numbers: Numbers, is_owner: bool) -> dict[str, str]:
     lighter = "smaller objects, or rays instead" if fetches else "fewer rays on their way"
     return {
         COMPUTE: "more PEs or faster tests: little else is left to gain",
+        LAUNCHES: "more rays at each go: a larger machine.quantum, fewer PEs, a larger picture",
         STARTUPS: fewer,
         COPYING: f"fewer bytes: {lighter}",
         COMMUNICATION: fewer,

@@ -13,7 +13,7 @@ from simmpp.engine.record.log import Sink
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
-from simmpp.machine.limits import total_compute_ps
+from simmpp.machine.limits import bound_ps
 from simmpp.machine.machine import Machine
 from simmpp.methods.table import SIMULATE
 from simmpp.placement.place import place
@@ -34,8 +34,8 @@ class Point:
 
     @property
     def bound_ps(self) -> int:
-        """Total compute / nb, rounded up: no policy can be faster."""
-        return -(-total_compute_ps(self.workload, self.machine) // self.machine.processors)
+        """Total compute / the sum of speeds, nb if they are 1, rounded up: none can be faster."""
+        return bound_ps(self.workload, self.machine)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,9 @@ Source: Nebel 1998, section 4 (figures 3 to 5).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
@@ -34,6 +35,19 @@ def ratio(reference: int, value: int) -> float:
     if value:
         return reference / value
     return math.inf if reference else 1.0
+
+
+def speedup(row: Mapping[str, Any]) -> float:
+    """T(1) / makespan of a row of ``results.csv``: one PE that holds all does only compute."""
+    return ratio(row.get("work_ps") or row["compute_ps"], row["makespan_ps"])
+
+
+def efficiency(row: Mapping[str, Any]) -> float:
+    """Speed-up / PEs or, where their speeds differ, bound / makespan."""
+    work_ps, bound_ps, nb = row.get("work_ps"), row.get("bound_ps"), row["processors"]
+    if work_ps and bound_ps and bound_ps != -(-work_ps // nb):
+        return ratio(bound_ps, row["makespan_ps"])
+    return speedup(row) / nb
 
 
 def profits(results: Sequence[Result], reference: str = REFERENCE) -> tuple[Profit, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
+from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
@@ -170,7 +171,9 @@ def _idle_at_first(point: Point) -> list[str]:
 
 def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     """The bound, the best classical dataflow, and what the user may not expect of the runs."""
-    bound = f"bound: total compute / {point.machine.processors} = {format_ps(point.bound_ps)}"
+    speed = total_speed(point.machine.speed, point.machine.processors)
+    of = "" if not point.machine.speed else " (the sum of speeds)"
+    bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, _best_classical(runs), *_memory(point, runs), *_idle_at_first(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"

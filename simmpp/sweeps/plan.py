@@ -25,7 +25,7 @@ from simmpp.run.rows import in_order, point_row
 from simmpp.sweeps.grid import GridPoint, further_columns, grid
 from simmpp.sweeps.growth import GROWS, NAMES, SWEPT, Identity, meanings
 from simmpp.sweeps.journal import Outcome
-from simmpp.sweeps.profits import SIMULATION
+from simmpp.sweeps.profits import NOISY, SIMULATION
 from simmpp.sweeps.task import Task, task_of
 
 SET = "--set "
@@ -207,7 +207,8 @@ def _row(planned: PlannedPoint, outcome: Outcome) -> Row:
         outcome.effective_fraction,
         outcome.error,
     )
-    return {**row, **point.swept, SIMULATION: planned.task.key}
+    noisy = {NOISY: True} if planned.task.is_noisy else {}
+    return {**row, **point.swept, SIMULATION: planned.task.key, **noisy}
 
 
 def refuse_overruled(config: Config) -> None:

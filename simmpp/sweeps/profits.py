@@ -14,7 +14,7 @@ from typing import NamedTuple
 from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CEILING, REFERENCE
-from simmpp.run.profit import ratio
+from simmpp.run.profit import efficiency, ratio, speedup
 from simmpp.run.rows import Seeds, by_place, finished, pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.stopping import corrected_interval
@@ -24,6 +24,8 @@ MEASURES = {"time_profit": "makespan_ps", "message_profit": "messages"}
 SIMULATION = "simulation"
 """What rows may tell besides their columns: the simulation that they are of. A point whose seeds
 share one has nothing that is drawn."""
+NOISY = "noisy"
+"""Likewise, that its seeds differ wherever objects are."""
 ROUNDING = 1e-9
 """A half-width that is exactly the tolerance may be rounded to more."""
 STATISTICS = ("", "_low", "_high", "_min", "_max")
@@ -73,12 +75,9 @@ def _over_seeds(
         values = profits_of(both, column)
         bounds = _bounds(values, both, tolerance)
         result |= {measure + name: value for name, value in _statistics(values, bounds).items()}
-    # one PE with everything in memory does nothing but compute
-    speedups = [
-        ratio(row["compute_ps"], row["makespan_ps"]) for _, row in both if row["compute_ps"] != ""
-    ]
-    result["speedup"] = _mean(speedups)
-    result["efficiency"] = _mean([speedup / any_row["processors"] for speedup in speedups])
+    known = [row for _, row in both if row["compute_ps"] != ""]
+    result["speedup"] = _mean([speedup(row) for row in known])
+    result["efficiency"] = _mean([efficiency(row) for row in known])
     return result
 
 
@@ -103,11 +102,13 @@ def _is_drawn(both: Sequence[tuple[Row, Row]]) -> bool:
     """Whether the profit of another seed could be another one.
 
     Not so where all seeds are one simulation, where the run is its own reference, and where PEs
-    hold either nothing but their own objects or all.
+    hold either nothing but their own objects or all, unless there is noise.
     """
     simulations = {(base.get(SIMULATION), row.get(SIMULATION)) for base, row in both}
     replicated = any(1 / row["processors"] < row["effective_fraction"] < 1 for _, row in both)
-    return replicated and len(simulations) > 1 and any(a != b for a, b in simulations)
+    is_noisy = any(row.get(NOISY) for _, row in both)
+    several = len(simulations) > 1 and any(a != b for a, b in simulations)
+    return several and (replicated or is_noisy)
 
 
 def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, float] | None:

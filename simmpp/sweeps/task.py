@@ -35,6 +35,8 @@ class Task:
     policy: PolicyParameters
     seed: int
     """The point's; 0 where nothing is drawn, so that all seeds are one simulation."""
+    is_noisy: bool = False
+    """Seeds differ wherever objects are."""
 
 
 def task_of(point: GridPoint, digest: str) -> Task:
@@ -50,11 +52,12 @@ def task_of(point: GridPoint, digest: str) -> Task:
     everywhere = policy.rules.all_resident
     rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
-    is_random = reads(policy.rules, "random") or policy.load_info == "two"
+    machine = constants_of(config)
+    is_noisy = machine["noise"] != "0"
+    is_random = reads(policy.rules, "random") or policy.load_info == "two" or is_noisy
     is_drawn = draws(memory, rules) or is_random
     is_drawn = is_drawn and METHODS[settings.method].is_placed
     seed = point.seed if is_drawn else 0
-    machine = constants_of(config)
     # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     held |= {"kept": memory.kept_bytes, "bounds": config.memory.bounds}
@@ -66,6 +69,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
         config=replace(config, source=None),
         policy=policy,
         seed=seed,
+        is_noisy=is_noisy,
     )
 
 

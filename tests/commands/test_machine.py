@@ -94,6 +94,20 @@ def test_runs_and_sweeps_have_that_machine() -> None:
     assert [of["at"]["machine.file"] for of in record["machine_of"]] == ["ours.yaml", "theirs.yaml"]
 
 
+def test_what_makes_pes_unlike_others_is_printed() -> None:
+    unlike = "speed: {50%: 2}, noise: 5%, straggler: {pe: 3, factor: 3, from: 1 s}"
+    Path("c.yaml").write_text(CONFIG.replace("quantum: 32", f"quantum: 32, {unlike}"))
+    lines = printed("c.yaml")
+    assert lines["speed"] == ("50%: 2", OVERRIDDEN)
+    assert lines["noise"] == ("0.05", OVERRIDDEN)
+    assert lines["straggler"] == ("PE 3, 3 times, 1 s to 4000000 s", OVERRIDDEN)
+    assert lines["compute_startup"][0] == "0 ps" and lines["least_tests"][0] == "0"
+    own = OURS + '  speed: {value: {0: 2}, source: "our log book"}\n  noise: 3%\n'
+    Path("ours.yaml").write_text(own)
+    lines = printed("ours.yaml")
+    assert (lines["speed"], lines["noise"]) == (("0: 2", "our log book"), ("0.03", OVERRIDDEN))
+
+
 MISTAKES = [
     (OURS.replace("t3d", "cm5"), "ours.yaml:2: based_on: value 'cm5': expected bluegene-l"),
     (OURS.replace("0.2 us", "2"), "ours.yaml:4: send_startup: value 2: expected a time"),

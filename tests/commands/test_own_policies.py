@@ -192,6 +192,7 @@ MISTAKES = [
     ("batch=4", "batch='few'", "mine.py:16: policy 'half': batch: value 'few': expected a count"),
     ("import", "imports", "mine.py:1: invalid syntax"),
     ("POLICY =", "raise SystemExit(0)\nPOLICY =", "mine.py:16: SystemExit: 0"),
+    ("batch=4", "like='half'", "mine.py:16: policy 'half': like: value 'half': expected object, "),
     ('"half"', '"a/b"', "mine.py:16: policy: name: value 'a/b': expected a letter, then letters"),
     ("def ask(v):\n", "def ask(v):\n    import nix\n", "mine.py:13: ask can't be compiled"),
 ]

@@ -52,7 +52,7 @@ def by_all_that_it_sees(v: View) -> int:
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.held_bytes
     seen = v.me + v.nb + v.ready + v.other + v.in_flight + v.initial_load + v.memory[1]
     done = v.finished + v.busy_ps - v.compute_ps * 2 + v.fetched - v.released
-    costs += v.fetch_ps * v.objects - v.fetch_flight_ps + done
+    costs += v.fetch_ps * v.objects - v.fetch_flight_ps + done + v.speed - v.other_speed
     nothing = v.object + v.owner + v.object_bytes + v.test_ps + v.holders + v.requests + v.unasked
     return (costs + seen + v.parameter[1] * v.greed) % (v.waiting + 2) if nothing == -2 else 0
 
@@ -74,6 +74,7 @@ def of_whom_it_likes(v: View) -> int:
     seen = v.object + v.object_bytes + v.owner + v.requests + v.in_flight + v.known_load + v.load
     costs = v.send_ps + v.receive_ps + v.flight_ps + v.test_ps + v.age_ps
     costs += v.fetch_ps // 3 + v.fetch_flight_ps // 5 - v.objects + v.finished * v.released
+    costs += 2 * v.speed + 3 * v.other_speed
     v.memory[7] = (v.memory[7] * 3 + seen + costs - v.unasked * v.holders) % 1000003
     return v.memory[7] % (v.nb + 4) + v.nothing_else
 

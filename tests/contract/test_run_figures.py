@@ -127,7 +127,7 @@ def test_mean_load_is_that_of_the_log(case: Case) -> None:
 @many
 def test_memory_and_pixels_add_up(case: Case) -> None:
     result, motion = seen(case)
-    assert int(motion.pixel_cost_ps.sum()) == int(result.compute_ps.sum())
+    assert int(motion.pixel_cost_ps.sum()) == result.work_ps
     assert int(motion.peak_bytes.max()) == result.peak_bytes
     assert int(motion.queue_bytes.max()) == result.peak_rays * case.machine.ray_bytes
     most = motion.resident_bytes + motion.transient_bytes + motion.queue_bytes

@@ -71,7 +71,7 @@ def by_all_that_it_knows(v: View) -> int:
     seen = v.me + v.load + v.ready + v.waiting + v.known_load + v.age_ps + v.in_flight + v.unasked
     nothing = v.object + v.owner + v.object_bytes + v.test_ps + v.holders + v.requests + v.other
     nothing += v.finished + v.busy_ps + v.compute_ps + v.fetched + v.released
-    nothing += v.objects + v.fetch_ps + v.fetch_flight_ps
+    nothing += v.objects + v.fetch_ps + v.fetch_flight_ps + v.speed + v.other_speed
     nothing += v.words[0] + v.words[3] + v.nothing_else
     v.memory[1] = (v.memory[1] * 31 + costs + seen + nothing + v.random) % 1000003
     v.other = v.memory[1] % (v.nb + 2) - 1

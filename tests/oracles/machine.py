@@ -14,6 +14,7 @@ from typing import Any
 from oracles.costs import intersection_ps
 from oracles.ledger import Outcome
 from oracles.network import distance
+from oracles.pace import Go, draw_noise, speed_now
 from oracles.serving import Serving
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
@@ -139,6 +140,9 @@ class Simulation(Serving):
     def compute(self, time: int, pe: PE) -> int:
         """Up to a quantum of tests; returns the end of that."""
         clock = self.pay("communication", pe, time, self.machine.probe_ps)
+        pe.go = Go.begun(self.machine, speed_now(self.machine, pe.number, time), clock)
+        pe.go.noise = draw_noise(self.machine, self.seed, pe.number, pe.goes)
+        pe.goes += 1
         done_before = len(self.ledger.finished_ps)
         tests_left = self.machine.quantum
         while tests_left > 0 and (ray := self.next_ray(pe)) is not None:
@@ -158,6 +162,11 @@ class Simulation(Serving):
                 clock = self.test(clock, pe, ray, obj)
                 tests_left -= 1
         done = len(self.ledger.finished_ps) - done_before
+        clock = self.pay("compute", pe, clock, pe.go.end - clock)
+        if pe.go.leaves_lanes_empty:
+            self.ledger.finished_ps[done_before:] = [clock] * done
+            for ray in pe.go.finished:
+                self.ledger.ray_ends[ray] = clock
         tests = self.machine.quantum - tests_left
         self.ledger.did(pe, time, "compute", clock, None, tests=tests, rays=done)
         return clock
@@ -166,7 +175,8 @@ class Simulation(Serving):
         """One intersection."""
         self.ledger.tested.append((ray, obj))
         self.get_on(pe)
-        clock = self.pay("compute", pe, clock, intersection_ps(self.machine, self.workload, obj))
+        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj))
+        clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
         was_granted = ray in pe.granted
         pe.granted.discard(ray)
@@ -191,9 +201,11 @@ class Simulation(Serving):
 
     def finish(self, clock: int, pe: PE, ray: int) -> int:
         """A ray is shaded and leaves its children here."""
-        clock = self.pay("compute", pe, clock, self.machine.ray_ps)
+        pe.go.rays_ps += self.machine.ray_ps
+        clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.ledger.finished_ps.append(clock)
         self.ledger.ray_ends[ray] = clock
+        pe.go.finished.append(ray)
         self.get_on(pe)
         self.rays_left -= 1
         self.alive += len(self.children[ray]) - 1

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from oracles.pace import Go
 from simmpp.machine.messages import OBJECT, RAYS
 
 WHOSE_LOAD = -2
@@ -120,6 +121,9 @@ class PE:
     """PE: rays sent to it since it was heard."""
     worth: dict[int, float] = field(default_factory=dict)
     """Of objects in the transient memory, as the policy says; infinite if it has not."""
+    goes: int = 0
+    """At computing so far."""
+    go: Go = field(default_factory=Go)
     memory: list[int] = field(default_factory=lambda: [0] * 8)
     """For the policy."""
     draws: int = 0

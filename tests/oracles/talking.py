@@ -117,7 +117,7 @@ class Talking(Dispatch):
         threads = machine.service == "thread"
         view.receive_ps = machine.handoff_ps if threads else receipt_ps
         if other is None:
-            view.other = view.known_load = -1
+            view.other, view.known_load, view.other_speed = -1, -1, 0
             view.age_ps, view.in_flight, view.hops, view.flight_ps = pe.clock, 0, 0, 0
             view.nothing_else, view.words = 1, [0, 0, 0, 0]
         else:

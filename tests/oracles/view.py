@@ -12,6 +12,7 @@ import numpy as np
 from oracles.costs import intersection_ps, packing, unpacking
 from oracles.memory import Bounded
 from oracles.network import distance, network_ps, receiving, sending
+from oracles.pace import rounded, speed_of
 from oracles.state import PE
 from simmpp.common.randomness import key
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
@@ -64,6 +65,8 @@ class Views(Bounded):
             compute_ps=pe.worked["compute"],
             fetched=pe.fetched,
             released=pe.released,
+            speed=rounded(1000 * speed_of(self.machine, pe.number)),
+            other_speed=rounded(1000 * speed_of(self.machine, other)),
             **numbers(self.policy, self.workload.n_primaries, self.nb),
             **own,
         )
@@ -91,7 +94,8 @@ class Views(Bounded):
         owner = self.owner_of(pe.number, obj)
         view = self.view(pe, owner, nothing_else, draws)
         view.object, view.owner, view.object_bytes = obj, view.other, self.object_bytes[obj]
-        view.test_ps = intersection_ps(self.machine, self.workload, obj)
+        cost_ps = intersection_ps(self.machine, self.workload, obj)
+        view.test_ps = rounded(cost_ps / speed_of(self.machine, pe.number))
         view.holders = sum(obj in self.pes[k].resident for k in self.island_of(pe.number))
         view.waiting, view.unasked = len(pe.rays_of(obj)), unasked
         view.requests = pe.in_flight[obj]

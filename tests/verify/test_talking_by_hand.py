@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import pytest
 from by_hand import case_of
-from implementations import IMPLEMENTATIONS, run
+from implementations import IMPLEMENTATIONS, result_of, run
 from oracles.ledger import Slice
 
+from simmpp.engine.simulate import ENGINES
 from simmpp.machine.messages import OBJECT, REQUEST, USER
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Policy
 from simmpp.policy.view import View
+from simmpp.run.limits import COPYING, limits_of_run
 
 pytestmark = pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
 
@@ -44,7 +46,8 @@ def test_a_word_is_heard_and_answered_with_the_same_words(implementation: str) -
     #          probe 759, object 1 to 1759, the ray's 500 to 2259
     # PE 1 924 hears to 950, but has said 2 (2 - 1) things and not got on: its answer is dropped
     policy = Policy("told", ask=when_told, heard=note_and_answer, idle=tell_the_other)
-    outcome = run(implementation, case_of(PolicyParameters(file=policy), [(0, [1])]))
+    case = case_of(PolicyParameters(file=policy), [(0, [1])])
+    outcome = run(implementation, case)
     assert outcome.makespan_ps == 2259
     assert (outcome.user_messages, outcome.user_dropped) == (4, 1)
     assert outcome.messages_by_kind == (1, 1, 0, 0)
@@ -65,6 +68,9 @@ def test_a_word_is_heard_and_answered_with_the_same_words(implementation: str) -
         (1, 485, "send", 497),
         (1, 924, "receive", 950),
     ]
+    if implementation in ENGINES:  # of communication, copying is an object to and fro, and 2 probes
+        limits = limits_of_run(result_of(implementation, case), case.machine)
+        assert limits.parts_ps[COPYING] == 2 * 50 + 2 * 1
     kinds = [one.kind for one in outcome.slices if one.what != "compute"]
     assert kinds[:6] == [USER, USER, REQUEST, OBJECT, USER, USER]
     assert kinds[6:] == [USER, REQUEST, OBJECT, USER, USER, USER]

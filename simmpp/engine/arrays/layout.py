@@ -34,6 +34,7 @@ from simmpp.engine.arrays.records import (
     MESSAGE,
     MISS,
     MOMENT,
+    PACE,
     PE,
     PEER,
     PROCESS,
@@ -119,6 +120,7 @@ ARRAYS = {
     "due_links": Array(I4, lambda n: 2 * n.peers if n.bounded else 0),
     # of machine and policy
     "copy_costs": Array(COPY),
+    "noise_factors": Array(I8),  # equally likely ones; empty without noise
     "topology": Array(I8),  # as ``machine.topology`` reads it
     # What hooks are shown, filled anew for each question: one for all PEs or, where a policy has a
     # memory, one for each.
@@ -196,6 +198,7 @@ PARAMETERS = (
     "processors",
     "island",  # PEs of an island
     "n_objects",
+    *PACE,
     "contends",  # links and ports serve one message at a time
     "service",  # who answers requests: BY_PE, BY_THREAD or BY_NIC
     "depth_first",

@@ -32,6 +32,10 @@ PE = np.dtype(
         ("busy_until_ps", "i8"),
         ("compute_ps", "i8"),
         ("communication_ps", "i8"),
+        ("launch_ps", "i8"),  # of compute_ps: startups, and what empty lanes add
+        ("pace_times", "i8"),  # tests and rays take times / per of what they cost
+        ("pace_per", "i8"),
+        ("goes", "i8"),  # at computing so far, with noise
         ("held_bytes", "i8"),  # resident and fetched objects
         ("peak_rays", "i8"),
         ("peak_bytes", "i8"),
@@ -56,6 +60,16 @@ PE = np.dtype(
     ],
     align=True,
 )
+PACE = (
+    "uneven",  # computing takes anything else than the sum of what tests and rays cost
+    "noise_key",
+    "straggler",  # the PE that is late, NONE: nobody
+    "straggler_times",
+    "straggler_per",
+    "straggler_from_ps",
+    "straggler_to_ps",
+)
+"""Parameters of ``pe.pace``."""
 RAY = np.dtype(
     [
         ("tested", "i4"),  # objects of its itinerary that it has been tested against

@@ -93,10 +93,17 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     pe.finished += 1
     s.rays_done += 1
     s.rays_left += end - child - 1
-    s.last_ray_ps = max(s.last_ray_ps, now_ps)
     if s.record_ends:
         ends_ps(s)[ray] = now_ps
     if s.bounded and child == end:
         rooms(s)[me].reserved -= 1  # else its children have its room
     elif s.measures and not s.bounded:
         note_memory(s, me)
+
+
+@kernel
+def end_together(s: Run, ray: int, now_ps: int) -> None:
+    """Linked rays are finished now, with lanes that were left empty, and not one by one."""
+    while ray != NONE:
+        ends_ps(s)[ray] = now_ps
+        ray = rays(s)[ray].next

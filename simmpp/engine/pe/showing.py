@@ -11,17 +11,17 @@ from simmpp.engine.arrays.views import (
     peer_rows,
     pes,
     policy_views,
-    test_ps,
     topology,
 )
 from simmpp.engine.network import flight_ps
 from simmpp.engine.pe.costs import sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.islands import holders_of, owner_of
+from simmpp.engine.pe.pace import speed_of, test_here_ps
 from simmpp.engine.pe.peers import age_ps, known_load
 from simmpp.engine.pe.wanted import fetch_ps, show_fetch, show_wanted
 from simmpp.machine.messages import RAYS
 from simmpp.machine.topology import hops
-from simmpp.policy.view import DONE, LOADS, OBJECT, RANDOM, SELF, WANTED, WAY, View
+from simmpp.policy.view import DONE, LOADS, OBJECT, RANDOM, SELF, SPEEDS, WANTED, WAY, View
 
 
 @kernel
@@ -75,7 +75,7 @@ def show_object(s: Run, view: View, me: int, miss_row: int, now_ps: int, reads: 
         show_load(s, view, miss.peer, now_ps)
     if reads & OBJECT:
         view.object, view.owner, view.requests = obj, view.other, miss.requests
-        view.object_bytes, view.test_ps = object_bytes(s)[obj], test_ps(s)[obj]
+        view.object_bytes, view.test_ps = object_bytes(s)[obj], test_here_ps(s, me, obj)
         first, end = holders_of(s, me, obj)
         view.holders = end - first
     if reads & WAY:
@@ -103,6 +103,9 @@ def show_self(s: Run, view: View, me: int, now_ps: int, groups: int) -> None:
     if groups & DONE:
         view.finished, view.fetched, view.released = pe.finished, pe.fetched, pe.released
         view.busy_ps, view.compute_ps = pe.compute_ps + pe.communication_ps, pe.compute_ps
+    if groups & SPEEDS:
+        view.speed = speed_of(pe)
+        view.other_speed = 0 if view.other == NONE else speed_of(pes(s)[pe.base + view.other])
     if groups & RANDOM:
         pe.draws += 1
         view.random = philox(s.random_key, me, pe.draws)

@@ -37,8 +37,9 @@ from simmpp.engine.pe.bounds.rooms import has_ready, note_memory
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
+from simmpp.engine.pe.pace import pace_of, paced_ps, took
 from simmpp.engine.pe.peers import sample_loads
-from simmpp.engine.pe.ready import finish_ray, next_ready, pop_ready
+from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_ready
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.talking import get_on, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
@@ -124,10 +125,10 @@ def note_peaks(s: Run, pe: Row) -> None:
 def compute(s: Run, me: int, now_ps: int) -> int:
     """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
-    start_ps = now_ps + s.probe_ps
-    clock_ps = start_ps
+    begin_ps = now_ps + s.probe_ps + s.compute_startup_ps
+    pace, cost_ps = pace_of(s, me, now_ps), 0
     pe.received_load = 0
-    tests, done = 0, s.rays_done
+    tests, done, last = 0, s.rays_done, NONE
     while tests < s.quantum and has_ready(s, me):
         ray = next_ready(s, me)
         first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
@@ -143,25 +144,40 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             if tests == s.quantum:
                 pe.cut = 1
                 break
-            clock_ps += test_ps(s)[obj]
-            _test(s, me, ray, obj, clock_ps)
+            cost_ps += test_ps(s)[obj]
+            _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
             tests += 1
         else:
-            clock_ps += s.ray_ps
+            cost_ps += s.ray_ps
             pop_ready(s, me)
-            finish_ray(s, me, ray, clock_ps)
-    if tests > 0 or s.rays_done > done:
+            finish_ray(s, me, ray, begin_ps + paced_ps(cost_ps, pace))
+            rays(s)[ray].next, last = last, ray
+    took_ps = took(s, me, cost_ps, tests, s.rays_done - done, pace)
+    return _end_go(s, me, now_ps, took_ps, tests, s.rays_done - done, last)
+
+
+@kernel
+def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, last: int) -> int:
+    """A go at computing has made tests, and is done with rays, linked from ``last`` on."""
+    pe, start_ps = pes(s)[me], now_ps + s.probe_ps
+    end_ps = start_ps + took_ps
+    if done > 0:
+        # Whatever followed the last of these rays was for others, which are finished later.
+        s.last_ray_ps = max(s.last_ray_ps, end_ps)
+        if s.record_ends and 0 < tests < s.least_tests:
+            end_together(s, last, end_ps)
+    if tests > 0 or done > 0:
         s.progress_at = s.activities
         get_on(pe)
     if s.logs:
-        note_compute(s, me, tests, s.rays_done - done, now_ps, clock_ps)
+        note_compute(s, me, tests, done, now_ps, end_ps)
     if s.record_counters:
-        note_work(s, me, now_ps, start_ps, clock_ps)
-        note_load(s, me, clock_ps)
-        note_finished(s, s.rays_done - done, clock_ps)
-    pe.compute_ps += clock_ps - start_ps
+        note_work(s, me, now_ps, start_ps, end_ps)
+        note_load(s, me, end_ps)
+        note_finished(s, done, end_ps)
+    pe.compute_ps += took_ps
     pe.communication_ps += s.probe_ps
-    return clock_ps
+    return end_ps
 
 
 @kernel

@@ -18,6 +18,7 @@ FORMS = {
     "fraction x": "x(?= = |$)",
     "imbalance": "imbalance",
     "latency": "latency",
+    "launches": "launches",
     "load": "loads?",
     "makespan": "makespans?",
     "message profit": "message profits?",

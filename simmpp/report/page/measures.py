@@ -14,7 +14,7 @@ from statistics import geometric_mean
 from simmpp.common.units import SIZES, TIMES
 from simmpp.plot.curves import Spread
 from simmpp.run import words
-from simmpp.run.profit import ratio
+from simmpp.run.profit import efficiency, speedup
 from simmpp.run.rows import pairs
 from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.profits import MEASURES, profits_of
@@ -66,14 +66,11 @@ def _column(column: str) -> Callable[[Points, int], list[float]]:
 
 
 def _speedups(points: Points, number: int) -> list[float]:
-    """One PE with everything in memory does nothing but compute."""
-    rows = [row for row in points.runs[number] if row["compute_ps"] != ""]
-    return [ratio(row["compute_ps"], row["makespan_ps"]) for row in rows]
+    return [speedup(row) for row in points.runs[number] if row["compute_ps"] != ""]
 
 
 def _efficiencies(points: Points, number: int) -> list[float]:
-    nb = points.profits[number]["processors"]
-    return [speedup / nb for speedup in _speedups(points, number)]
+    return [efficiency(row) for row in points.runs[number] if row["compute_ps"] != ""]
 
 
 def _node_times(points: Points, number: int) -> list[float]:

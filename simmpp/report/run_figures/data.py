@@ -189,7 +189,7 @@ def _count_hops(network: Network, messages: Ints, counts: Ints) -> None:
 
 
 def pixel_costs(point: Point) -> Ints:
-    """Time of the tests and rays of each pixel's tree: (rows, columns) ps."""
+    """What the tests and rays of each pixel's tree cost: (rows, columns) ps."""
     workload, machine = point.workload, point.machine
     test_ps = machine.test.of_objects(workload)[workload.itinerary_objects]
     before_ps = np.concatenate([[0], np.cumsum(test_ps, dtype=np.int64)])

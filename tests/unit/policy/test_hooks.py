@@ -159,6 +159,14 @@ def test_what_is_no_policy_is_refused(changes: dict[str, Any], expected: str) ->
         Policy("own", **changes)
 
 
+def test_who_is_like_a_policy_names_one() -> None:
+    assert PolicyParameters(file=Policy("own", ask=lambda v: 1, like="concurrent")).name == "own"
+    for wrong in ("own", "concurent", 3, None, []):
+        with pytest.raises(ConfigError, match=r"like: value .*: expected object, ray"):
+            PolicyParameters(file=Policy("own", ask=lambda v: 1, like=wrong))  # type: ignore[arg-type]
+    assert {policy.like for policy in POLICIES.values()} <= {"", *POLICIES}
+
+
 def test_an_object_of_python_is_swept_in_this_process_alone() -> None:
     own = Policy("own", send=lambda v: v.waiting, ask=lambda v: 1)
     config = {"scene": "tetra:2", "picture": {"resolution": 8}, "processors": 2}

@@ -21,6 +21,7 @@ from simmpp.run.limits import (
     IMBALANCE,
     KINDS,
     LATENCY,
+    LAUNCHES,
     STARTUPS,
     WAITING,
     Limits,
@@ -60,6 +61,15 @@ def test_an_object_is_fetched() -> None:
         "limited most by one hot PE, 42 % of the makespan (compute is 42 %); what would help "
         "first: deal pixels otherwise (placement.pixels)"
     )
+
+
+def test_launches_are_told_from_tests() -> None:
+    # test_pace_by_hand: two goes at computing, each of one test in place of four
+    case = case_of(OBJECT, [(0, [0, 1])], compute_startup_ps=100, least_tests=4)
+    limits, result = limits_in(case)
+    assert (limits.parts_ps[COMPUTE], limits.parts_ps[LAUNCHES]) == (2500, 2 * 100 + 2 * 3000)
+    assert sum(limits.parts_ps.values()) == 2 * result.makespan_ps
+    assert "machine.quantum" in limits.help[LAUNCHES]
 
 
 def test_a_ray_goes_to_and_fro() -> None:

@@ -42,6 +42,16 @@ def test_ratios_are_taken_seed_by_seed() -> None:
     assert of("object", rows)["time_profit"] == 1.0
 
 
+def test_where_speeds_differ_efficiency_is_that_of_the_bound() -> None:
+    # 4 PEs with speeds of 6 in all: 1200 of work in 600, of which the bound is 200
+    uneven = {"compute_ps": 1500, "launch_ps": 0, "work_ps": 1200, "bound_ps": 200}
+    ray = of("ray", [row("object", 0, 1000, 9, **uneven), row("ray", 0, 600, 9, **uneven)])
+    assert (ray["speedup"], ray["efficiency"]) == (2.0, 1 / 3)
+    even = {"compute_ps": 1500, "launch_ps": 300, "work_ps": 1200, "bound_ps": 300}
+    ray = of("ray", [row("object", 0, 1000, 9, **even), row("ray", 0, 600, 9, **even)])
+    assert (ray["speedup"], ray["efficiency"]) == (2.0, 0.5)
+
+
 def test_one_seed_has_no_interval() -> None:
     ray = of("ray", [row("object", 0, 10, 0), row("ray", 0, 5, 0)])
     assert (ray["n"], ray["time_profit"], ray["message_profit"]) == (1, 2.0, 1.0)

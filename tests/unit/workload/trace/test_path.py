@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from simmpp.engine.simulate import simulate
 from simmpp.scene.scene import Light, MeshPart, Scene
 from simmpp.workload.check import check
 from simmpp.workload.digest import digest_of
+from simmpp.workload.exchange.exchange import export_workload, import_workload
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace import room as room_of_rays
 from simmpp.workload.trace import tracer
@@ -89,6 +91,14 @@ def test_whoever_traces_and_however_many(
         monkeypatch.setattr(tracer, "BATCH", batch)
         again = trace(SCENE, PICTURE, intersector=witness, threads=threads)
         assert contents(again) == contents(WORKLOAD)
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".npz"])
+def test_as_tables_they_are_the_same(tmp_path: Path, suffix: str) -> None:
+    export_workload(WORKLOAD, tmp_path / f"a{suffix}")
+    again = import_workload(tmp_path / f"a{suffix}")
+    assert contents(again) == contents(WORKLOAD)
+    assert (again.picture, again.samples) == (WORKLOAD.picture, WORKLOAD.samples)
 
 
 def test_more_samples_are_more_of_the_same() -> None:
