@@ -136,7 +136,7 @@ def draw_half(axes: Axes, of_half: pd.DataFrame) -> None:
     axes.axvline(FAR, color="0.5", linewidth=0.8)
     axes.axhline(90, color="0.5", linewidth=0.8)
     axes.set_xscale("log")
-    ticks = (1, NEAR, FAR, 1.5, 2, 3, 5, 10)
+    ticks = (NEAR, FAR, 1.5, 2, 3, 5, 10)
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks], fontsize=8)
     axes.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     axes.set_xlim(1, 10)
