@@ -141,6 +141,16 @@ def fits(needs: Needs, placement: Placement, scene_bytes: int) -> bool:
     return is_enough and placement.island * given >= scene_bytes
 
 
+def lacking(needs: Needs, placement: Placement, scene_bytes: int) -> int:
+    """By how many bytes a capacity is too small for a policy to run in; 0 if it ``fits``."""
+    bounds = placement.capacity
+    if bounds is None:
+        return 0
+    least = needs.least_bytes if bounds.has_credits else 0
+    scene_part = -(-scene_bytes // placement.island)
+    return max(0, max(least, scene_part) - capacity_bytes(bounds, needs))
+
+
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:
     """How PEs use a capacity that is large enough."""
     receive, fetch, queue = [], [], []

@@ -77,7 +77,7 @@ def bench(
 def _written(plans: Mapping[str, Plan], journal: Journal, out: Path, watcher: Watcher) -> Bench:
     full, outcomes = plans[SIMULATE], journal.outcomes
     runs = [row for plan in plans.values() for row in plan.rows(outcomes)]
-    good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if not row["error"]]
+    good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if has_result(row)]
     keys = (*PLACE, *full.further)
     trace_s = {
         planned.scene: journal.trace_s[planned.task.digest]
