@@ -212,7 +212,7 @@ def pack(s: Run, me: int, row: int, now_ps: int) -> int:
     startup_ps = sending_ps(s, me, m.destination, m.kind)
     m.depart_ps = now_ps + startup_ps + parts_ps(s, row, PACK)
     set_off(s, m)
-    if s.bounded:
+    if s.bounded and s.sends:
         m.credit = take_owed(s, me, m.destination)
     if s.packing != SINGLY:
         _count_parts(s, row)
