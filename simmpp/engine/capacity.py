@@ -133,12 +133,7 @@ def fits(needs: Needs, placement: Placement, scene_bytes: int) -> bool:
     With ``flow: none`` it is only compared with what is held, but all PEs of an island together
     have to hold the scene.
     """
-    bounds = placement.capacity
-    if bounds is None:
-        return True
-    given = capacity_bytes(bounds, needs)
-    is_enough = not bounds.has_credits or given >= needs.least_bytes
-    return is_enough and placement.island * given >= scene_bytes
+    return lacking(needs, placement, scene_bytes) == 0
 
 
 def lacking(needs: Needs, placement: Placement, scene_bytes: int) -> int:
