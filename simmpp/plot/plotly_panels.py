@@ -226,7 +226,7 @@ def _layer(layer: Layer) -> Drawn:
     marker: Drawn = {"color": f"var(--c{(layer.style or 0) % N_COLOURS})", "line": {"width": 0}}
     if layer.style is None:
         pattern = {"shape": "/", "size": 8, "solidity": 0.2, "fgcolor": "var(--muted)"}
-        marker |= {"color": "var(--stated)", "pattern": pattern}
+        marker |= {"color": "var(--stated-line)", "pattern": pattern | {"bgcolor": "rgba(0,0,0,0)"}}
     return {
         "type": "bar",
         "name": html.escape(layer.label),

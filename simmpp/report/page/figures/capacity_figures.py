@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain, pairwise
 from statistics import fmean
 
 from simmpp.common.files import Row
 from simmpp.common.units import SIZES
-from simmpp.plot.curves import LOG_MARGIN, Curve, Hatched, Panel, Scale, Spread
+from simmpp.plot.curves import LOG_MARGIN, Bars, Curve, Hatched, Panel, Scale, Spread
 from simmpp.report.page import scales
 from simmpp.report.page.arrangement import abscissas, arrange, plates
 from simmpp.report.page.figures.bar_figures import bar_figure
@@ -59,7 +60,7 @@ def _parts(runs: Sequence[Row]) -> dict[str, float]:
 def _fullest(points: Points, along: str) -> Figure:
     parts = [_parts(runs) for runs in points.runs]
     unit, size = scales.unit_of(SIZES, (sum(of.values()) for of in parts))
-    return bar_figure(
+    figure = bar_figure(
         points,
         PARTS_STEM,
         "Memory of the fullest PE",
@@ -70,6 +71,11 @@ def _fullest(points: Points, along: str) -> Figure:
         lambda number: {part: height / size for part, height in parts[number].items()},
         along,
     )
+    ran = {
+        plate: [panel for panel in panels if isinstance(panel, Bars) and panel.rows]
+        for plate, panels in figure.plates.items()
+    }  # nothing is known of the memory of what does not fit
+    return replace(figure, plates={plate: panels for plate, panels in ran.items() if panels})
 
 
 def _makespans(points: Points, along: str) -> Figure:

@@ -49,7 +49,7 @@ def _tiles(
     up: str,
 ) -> Tiles:
     styles = {words.policy(name): style for name, style in styles_of(points.profits).items()}
-    xs, ys = points.axes[across], points.axes[up] if up else [""]
+    xs, ys = points.axes[across], points.axes.get(up, [""])
     layers: dict[str, list[Tile]] = {}
     for group in groups:
         number = points.places[group][0]
