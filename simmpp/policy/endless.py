@@ -2,7 +2,7 @@
 
 Compiled code hears no signal and no timeout before it returns. So each loop of the file gets two
 lines, which cost a hook a nanosecond a turn. What is left, such as loops in functions that loops
-call, meets ``sweeps.executors.ended_after``: the worker is ended, where it is a sweep's own.
+call, meets ``sweeps.deadline``: the worker is ended, where it is a sweep's own.
 """
 
 from __future__ import annotations

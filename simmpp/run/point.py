@@ -101,9 +101,10 @@ def run_point(
     settings = point.config.settings
     scene_bytes = int(point.workload.object_bytes.sum())
     for parameters, named in policies_of(point.config):
-        needs = needs_of(point.workload, point.machine, point.placement, parameters)
-        if not fits(needs, point.placement, scene_bytes):
-            continue
+        if point.placement.capacity is not None:
+            needs = needs_of(point.workload, point.machine, point.placement, parameters)
+            if not fits(needs, point.placement, scene_bytes):
+                continue
         began_s = time.perf_counter()
         result = simulate(
             point.workload,

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import PRELOAD, SERVED
+from simmpp.sweeps.deadline import note_worker
 
 if TYPE_CHECKING:
     from simmpp.sweeps.journal import Outcome
@@ -210,32 +211,9 @@ def _let_go(begun: Future[Leashed]) -> None:
         executor.shutdown(wait=False)
 
 
-_is_worker = threading.Event()
-"""This process is one of LocalProcesses, and nobody else's."""
-
-
-@contextmanager
-def ended_after(timeout_s: float | None) -> Iterator[None]:
-    """``with ended_after(60):`` what hears nothing, as a hook that never returns, ends the worker.
-
-    Compiled code can't be broken off, only the process that it runs in, a few seconds later than
-    what hears. Does nothing elsewhere.
-    """
-    if timeout_s is None or not _is_worker.is_set():
-        yield
-        return
-    end = threading.Timer(timeout_s + 1 + min(timeout_s, 4), os._exit, (1,))
-    end.daemon = True
-    end.start()
-    try:
-        yield
-    finally:
-        end.cancel()
-
-
 def _begin(held: Connection, cache: str) -> None:
     """In a new worker: Ctrl-C is the parent's to handle; end when the leash is let go."""
-    _is_worker.set()
+    note_worker()
     warnings.simplefilter("ignore")  # the parent has told them; here they would be told again
     os.environ["SIMMPP_CACHE"] = cache  # the server that forks workers may be older
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -28,7 +28,7 @@ from simmpp.placement.placement import Memory, Placement, PlacementRules
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.inputs import shared_workload
 from simmpp.run.provenance import difference, result_versions
-from simmpp.sweeps.executors import ended_after
+from simmpp.sweeps.deadline import ended_after
 from simmpp.sweeps.journal import Outcome
 from simmpp.sweeps.task import Task
 from simmpp.workload.workload import Workload
