@@ -67,7 +67,7 @@ def _told(points: Points, kind: str, flows: list[str], numbers: list[int], n_cas
     sizes = [fit.bytes for n in numbers if (fit := fit_of(points, n))]
     verb = {
         LACKS: "fits" if is_all else "does not fit" if len(flows) == 1 else "do not fit",
-        STUCK: "came to no end, as no PE could go on,",
+        STUCK: "came to no end",
         EXCEEDS: "held more than a PE has",
     }[kind]
     who = (
@@ -77,7 +77,7 @@ def _told(points: Points, kind: str, flows: list[str], numbers: list[int], n_cas
     )
     text = words.capital(f"{who} {verb}{_where(points, numbers, n_cases)}")
     if kind == STUCK:
-        return f"{text}."
+        return f"{text}, as no PE could go on."
     by = {LACKS: "each PE lacks", EXCEEDS: "by"}[kind]
     return f"{text}{':' if kind == LACKS else ','} {by} {_span(sizes)}."
 
