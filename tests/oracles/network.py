@@ -1,8 +1,4 @@
-"""Links and ports that serve one message at a time, in plain Python, by names instead of numbers.
-
-On the torus the latency is paid before the ejection port, not behind the injection port as in the
-package: all messages pay it once, so it makes no difference where.
-"""
+"""Links and ports that serve one message at a time, in plain Python, by names instead of numbers."""
 
 from __future__ import annotations
 
@@ -42,9 +38,9 @@ def torus_way(machine: Machine, source: int, destination: int, n_bytes: int) -> 
     at_port_ps = max(busy_ps, machine.port_gap_ps)
     between = links(machine.shape, source, destination)
     stages = [(link, busy_ps, machine.hop_latency_ps) for link in between]
-    stages[-1] = (between[-1], busy_ps, machine.hop_latency_ps + machine.latency_ps)
     ejection = ("ejection", str(destination)), at_port_ps, busy_ps
-    return [(("injection", str(source)), at_port_ps, 0), *stages, ejection]
+    # Where the latency is paid matters to messages that others of their instant have caused.
+    return [(("injection", str(source)), at_port_ps, machine.latency_ps), *stages, ejection]
 
 
 WAYS = {"torus": torus_way, "levels": blocks.way, "fat-tree": tree.way}
