@@ -11,6 +11,7 @@ from builders import Case, on_islands, on_torus, placement_of, random_case, work
 from implementations import run
 
 from simmpp.engine.simulate import ENGINES
+from simmpp.machine.uneven import NOBODY
 from simmpp.policy.parameters import CEILING, PolicyParameters
 from simmpp.workload.workload import Workload
 
@@ -32,9 +33,10 @@ def islands_of(seed: int) -> Case | None:
         policy = replace(policy, load_info="piggyback")
     placement = on_islands(replace(case.placement, islands=1), n_islands)
     starts = np.arange(n0) % n_islands * island + placement.pixel_pes % island
+    even = {"speed": (), "noise": "0", "straggler": NOBODY}  # a PE has other numbers there
     return replace(
         case,
-        machine=replace(case.machine, hop_latency_ps=0, contention="none"),
+        machine=replace(case.machine, hop_latency_ps=0, contention="none", **even),
         placement=replace(placement, pixel_pes=starts.astype(np.int32)),
         policy=policy,
     )

@@ -142,4 +142,4 @@ def test_rays_and_requests_share_a_message_only_where_each_ray_asks(implementati
                 s.what == "send" and s.rays > 0 and s.requests > 0 for s in slices
             )
     assert shared[True] == 0
-    assert shared[False] > 10, shared
+    assert shared[False] > 3, shared
