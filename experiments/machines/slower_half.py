@@ -77,7 +77,12 @@ def draw(rows: list[Row]) -> None:
         save(figure, HERE / STEM)
 
 
-if __name__ == "__main__":
-    found = list(summaries(Path(sys.argv[1])))
+def main(folder: Path) -> None:
+    """Write rows, draw."""
+    found = list(summaries(folder))
     write_csv(found, tuple(found[0]), HERE / f"{STEM}.csv")
     draw(found)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

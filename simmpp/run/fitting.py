@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from simmpp.common.places import misplaced
 from simmpp.common.units import format_bytes, shown, write_bytes
-from simmpp.engine.capacity import Needs, capacity_bytes, fits, needs_of
+from simmpp.engine.capacity import Needs, capacity_bytes, lacking, needs_of
 from simmpp.placement.rooms import LEAST, Capacity
 from simmpp.policy.parameters import REFERENCE, PolicyParameters
 from simmpp.run.point import Point, policies_of
@@ -20,7 +20,13 @@ class Fitting:
     named: bool
     """The configuration names it."""
     needs: Needs
-    fits: bool
+    lacking_bytes: int
+    """By how much the capacity is too small."""
+
+    @property
+    def fits(self) -> bool:
+        """It can be run."""
+        return self.lacking_bytes == 0
 
 
 def fittings(point: Point) -> list[Fitting]:
@@ -30,8 +36,8 @@ def fittings(point: Point) -> list[Fitting]:
     scene_bytes, found = int(workload.object_bytes.sum()), []
     for parameters, named in policies_of(point.config):
         needs = needs_of(workload, point.machine, placement, parameters)
-        does = bounds is None or fits(needs, placement, scene_bytes)
-        found.append(Fitting(parameters, named, needs, does))
+        lacks = 0 if bounds is None else lacking(needs, placement, scene_bytes)
+        found.append(Fitting(parameters, named, needs, lacks))
     return found
 
 

@@ -61,10 +61,11 @@ def row(point: Point, run: PolicyRun) -> Row:
 
 
 def unfit_row(point: Point, policy: Fitting) -> Row:
-    """The row of a policy that does not fit: no more than that."""
+    """The row of a policy that does not fit: no more than that, and what it lacks."""
+    numbers = {"fits": 0, "exceeds_bytes": policy.lacking_bytes}
     effective = 1.0 if policy.parameters.rules.all_resident else point.placement.effective_fraction
     title, scene = policy.parameters.title, point.workload.name
-    return point_row(point.config, scene, title, point.seed, {"fits": 0}, effective)
+    return point_row(point.config, scene, title, point.seed, numbers, effective)
 
 
 def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
@@ -100,7 +101,14 @@ def finished(seeds: Seeds) -> Seeds:
 
 def has_ended(row: Row) -> bool:
     """Whether it is of a run that came to its end; others failed, did not fit or were stuck."""
-    return not row["error"] and row["makespan_ps"] != ""
+    return not row["error"] and row.get("makespan_ps") != ""
+
+
+def is_unfit(row: Row) -> bool:
+    """Whether a policy did not fit into the memory of the PEs, or came to no end in it."""
+    return not (row["error"] or has_ended(row)) and (
+        row.get("fits") == 0 or row.get("infeasible") == 1
+    )
 
 
 def pairs(above: Seeds, below: Seeds) -> list[tuple[Row, Row]]:

@@ -160,7 +160,7 @@ def test_in_the_least_memory_all_of_them_end(
 ) -> None:
     """With packing, refresh and evictions, and as the oracle says."""
     monkeypatch.setitem(POLICIES, "adversary", adversary(send, ask, 3, "greed", candidates))
-    for seed in range(CASES // 3):
+    for seed in range(CASES // 5):
         least = {"bytes": LEAST} if seed % 2 else {}
         case = with_capacity(adversarial_case(seed), seed, flow="credits", **least)
         expected, got = asdict(run("oracle", case)), asdict(run("compiled", case))

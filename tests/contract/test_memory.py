@@ -17,7 +17,7 @@ from implementations import IMPLEMENTATIONS, run
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.rooms import LEAST, Capacity
 
-CASES = int(os.environ.get("SIMMPP_TEST_CASES", "60"))
+CASES = int(os.environ.get("SIMMPP_TEST_CASES", "40"))
 FIRST = int(os.environ.get("SIMMPP_TEST_FIRST_SEED", "0"))
 BEYOND = 1 << 50
 """A capacity that nothing fills."""

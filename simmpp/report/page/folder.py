@@ -16,7 +16,15 @@ from simmpp.common.folders import is_at_work, last_call
 from simmpp.methods.columns import COLUMNS, FURTHER, KEYS, METHOD, NUMBERS
 from simmpp.run import words
 from simmpp.run.record import read_record
-from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, has_ended, in_order
+from simmpp.run.rows import (
+    PROFITS,
+    RECORD,
+    RESULTS,
+    TIMINGS,
+    has_ended,
+    in_order,
+    is_unfit,
+)
 from simmpp.studies.bench.bench import BENCH
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
@@ -38,7 +46,6 @@ class Folder:
 
     path: Path
     rows: list[Row]
-    """Those that have results, and those that failed."""
     further: tuple[str, ...] = ()
     """Columns of keys beyond those that all rows have, and the method where it changes."""
     experiments: Mapping[str, list[Row]] = field(default_factory=dict)
@@ -53,8 +60,6 @@ class Folder:
     """``run.json``."""
     parts: Mapping[str, Folder] = field(default_factory=dict)
     """By name, the folders that these are the rows of, where there are several."""
-    endless: Sequence[Row] = ()
-    """Rows of what does not fit into the memory of its PEs, or was stuck there."""
     called: str = ""
     """By its user, if at all."""
 
@@ -73,7 +78,7 @@ class Folder:
     def planned(self) -> int:
         """Rows that there will be; as many as there are, where nothing says how many."""
         points = self.record.get("points")
-        return points - len(self.endless) if isinstance(points, int) else len(self.rows)
+        return points if isinstance(points, int) else len(self.rows)
 
     @property
     def labels(self) -> dict[str, str]:
@@ -108,13 +113,10 @@ def read_folder(path: Path, name: str = "DIR") -> Folder:
         record = read_record(path / RECORD) if (path / RECORD).is_file() else {}
     bench = numbers_of(_table(path / BENCH, bench_columns(())))
     if (path / RESULTS).is_file():
-        every, further = read_rows(path / RESULTS)
-        endless = [row for row in every if not (row["error"] or has_ended(row))]
-        rows = [row for row in every if row["error"] or has_ended(row)]
+        rows, further = read_rows(path / RESULTS)
         table = _table(path / PROFITS, profit_columns())
         profits = [_typed(row, path / PROFITS, line) for line, row in enumerate(table, 2)]
-        beside = claims, timings, profits, bench, record
-        return Folder(path, rows, further, {}, *beside, endless=endless)
+        return Folder(path, rows, further, {}, claims, timings, profits, bench, record)
     files = {name: path / f"{name}.csv" for name in EXPERIMENTS}
     experiments = {name: read_rows(file)[0] for name, file in files.items() if file.is_file()}
     if not experiments and not bench:
@@ -159,8 +161,7 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     further = further_of(texts)
     rows = [_typed(row, path, line) for line, row in enumerate(texts, 2)]
     for line, row in enumerate(rows, 2):
-        does_not_end = row.get("fits") == 0 or row.get("infeasible") == 1
-        if not (row["error"] or has_ended(row) or does_not_end):
+        if not (row["error"] or has_ended(row) or is_unfit(row)):
             raise ConfigError("expected results or an error", where=str(path), line=line)
     return rows, further
 
