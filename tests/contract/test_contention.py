@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from builders import Case, cases, on_torus, random_case
 from hypothesis import given, settings
-from implementations import result_of, run
+from implementations import SEED, result_of, run
 from oracles.costs import transfer_ps
 from oracles.machine import Simulation
 from oracles.network import Network, network_ps
@@ -41,7 +41,7 @@ def test_a_run_in_which_no_message_waits_is_the_one_without_contention(engine: s
 def waits_ps(case: Case) -> set[int]:
     """What the messages of the oracle's run waited; one that takes no time counts as waiting."""
     machine, rules, network = case.machine, POLICIES[case.policy.name], Network(case.machine)
-    parts = (case.workload, machine, case.placement, case.policy, case.ready_order, rules)
+    parts = (case.workload, machine, case.placement, case.policy, case.ready_order, rules, SEED)
     simulation = Simulation(*parts)
     simulation.run()
     sent = {(m.source, m.send_number): m for m in simulation.ledger.sent}

@@ -1,4 +1,4 @@
-"""Links and ports that serve one message at a time, in plain Python, by names, not numbers."""
+"""Links and ports that serve one message at a time: plain Python, names instead of numbers."""
 
 from __future__ import annotations
 
