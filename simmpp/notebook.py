@@ -16,7 +16,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.engine.result import Result
-from simmpp.plot.curves import PERCENT, Bars, Panel, Scale
+from simmpp.plot.curves import PERCENT, Bars, Drawable, Panel, Scale
 from simmpp.plot.matplotlib_panels import Drawing, drawing
 from simmpp.policy.parameters import REFERENCE
 from simmpp.report.page.figures.profit_figures import ProfitData, profit_figures
@@ -54,7 +54,7 @@ def html(shown: Result | SweepResult) -> str:
     return "\n".join([*parts, *_links(shown)])
 
 
-def _panels(shown: Result | SweepResult) -> Sequence[Panel | Bars]:
+def _panels(shown: Result | SweepResult) -> Sequence[Drawable]:
     return [_accounts(shown)] if isinstance(shown, Result) else list(_curves(shown))
 
 
@@ -155,7 +155,7 @@ def _interval(row: Row, measure: str) -> str:
     return f"{mean:.3f} ({low:.3f} to {high:.3f})" if words.is_finite(low) else f"{mean:.3f}"
 
 
-def _curves(result: SweepResult) -> Iterator[Panel | Bars]:
+def _curves(result: SweepResult) -> Iterator[Drawable]:
     """Both profits along the best axis; the plate that shows most."""
     rows = _rows(result.rows)
     points = points_of(rows, further_of(rows), _rows(result.profits))

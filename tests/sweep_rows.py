@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from simmpp.common.files import Row, write_csv
+from simmpp.engine.memory_use import COLUMNS as BOUNDS
 from simmpp.methods.columns import NUMBERS, result_columns
 from simmpp.run.rows import RESULTS, in_order
 
@@ -15,6 +16,16 @@ SPEED = {"object": 1.0, "ray": 0.5, "concurrent": 2.0, "replicated": 3.0}
 """Of a policy; others are as fast as object dataflow."""
 HOSTILE = "<script>hacked=1</script><b>\"eager\" & 'lazy'</b> %{x}"
 """A label that harms a page which doesn't escape it."""
+
+
+PEAKS = {
+    name: n * 10
+    for n, name in enumerate(
+        ("peak_resident", "peak_fetched", "peak_ray_queue", "peak_receive"), start=1
+    )
+}
+UNFIT: Row = dict.fromkeys((*NUMBERS, *BOUNDS), "") | {"fits": 0, "exceeds_bytes": 3 * 10**9}
+"""What a policy that does not fit has for numbers."""
 
 
 def row(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
@@ -56,6 +67,14 @@ def failed(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
     return made | dict.fromkeys((*NUMBERS, "effective_fraction"), "") | {"error": "took too long"}
 
 
+def bounded(policy: str, makespan_ps: int | None, capacity: str, **cells: Any) -> Row:
+    """A row with a capacity; without a makespan of what lacks 3 GB."""
+    made = row(policy, fraction=0.1, **{"memory.capacity": capacity}) | dict.fromkeys(BOUNDS, "")
+    if capacity != "null":
+        made |= dict.fromkeys(BOUNDS, 0) | {"fits": 1} | PEAKS
+    return made | ({"makespan_ps": makespan_ps} if makespan_ps else UNFIT) | cells
+
+
 def sweep(
     policies: Sequence[str] = ("object", "ray", "concurrent", "replicated"),
     seeds: int = 3,
@@ -70,8 +89,10 @@ def sweep(
     ]
 
 
-def written(folder: Path, rows: Iterable[Row], further: Sequence[str] = ()) -> Path:
+def written(
+    folder: Path, rows: Iterable[Row], further: Sequence[str] = (), uses: Sequence[str] = ()
+) -> Path:
     """The folder, with the rows as results.csv."""
     folder.mkdir(parents=True, exist_ok=True)
-    write_csv(in_order(rows, further), result_columns(further), folder / RESULTS)
+    write_csv(in_order(rows, further), result_columns(further, uses), folder / RESULTS)
     return folder

@@ -34,6 +34,7 @@ from simmpp.common.modules import PICTURES
 from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
+from simmpp.run.fitting import require_fitting
 from simmpp.run.point import Point, PolicyRun, make_point, refuse_models, run_point
 from simmpp.run.record import record_of_run, write_record
 from simmpp.run.rows import RECORD, RESULTS, row, write_rows
@@ -138,6 +139,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     if looks.picture or verify:
         scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config, simulating=True))
+    require_fitting(point)
     if looks.picture:
         write_picture(point, looks.picture)
     runs: list[PolicyRun] = []
@@ -194,7 +196,8 @@ def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
     titles = [run.parameters.title for run in runs]
     labels = {run.parameters.title: run.parameters.name for run in runs}
     say(f"{heading(point)}\n")
-    for sentence in answer_of([row(point, run) for run in runs], labels=labels):
+    rows = [row(point, run) for run in runs]
+    for sentence in answer_of([each for each in rows if each["makespan_ps"] != ""], labels=labels):
         say(sentence.text)
     say()
     say(numbers(titles, measures(runs)))

@@ -133,12 +133,17 @@ def fits(needs: Needs, placement: Placement, scene_bytes: int) -> bool:
     With ``flow: none`` it is only compared with what is held, but all PEs of an island together
     have to hold the scene.
     """
+    return lacking(needs, placement, scene_bytes) == 0
+
+
+def lacking(needs: Needs, placement: Placement, scene_bytes: int) -> int:
+    """By how many bytes a capacity is too small for a policy to run in; 0 if it ``fits``."""
     bounds = placement.capacity
     if bounds is None:
-        return True
-    given = capacity_bytes(bounds, needs)
-    is_enough = not bounds.has_credits or given >= needs.least_bytes
-    return is_enough and placement.island * given >= scene_bytes
+        return 0
+    least = needs.least_bytes if bounds.has_credits else 0
+    scene_part = -(-scene_bytes // placement.island)
+    return max(0, max(least, scene_part) - capacity_bytes(bounds, needs))
 
 
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
 from simmpp.engine.arrays.hashtable import link
-from simmpp.engine.arrays.records import BY_THREAD, NONE, SLEEP, WOKEN, Row, Run
+from simmpp.engine.arrays.records import BY_NIC, BY_THREAD, NONE, SLEEP, WOKEN, Row, Run
 from simmpp.engine.arrays.views import heap, messages, outbox, processes
 from simmpp.engine.event_heap import (
     HEAD,
@@ -137,13 +137,12 @@ def _arrive(s: Run, message: int, now_ps: int) -> None:
     if s.measures:
         note_arrival_of(s, message)
     m = messages(s)[message]
-    if is_get(s, m):
+    if s.service == BY_NIC and is_get(m):
         send_back(s, message)
-        _travel(s, message)
-    elif s.service == BY_THREAD:
-        _deliver(s, message, s.processors + m.destination, now_ps)
-    else:
-        _deliver(s, message, m.destination, now_ps)
+        _carry(s)
+        return
+    me = m.destination + s.processors if s.service == BY_THREAD else m.destination
+    _deliver(s, message, me, now_ps)
 
 
 @kernel
@@ -189,20 +188,23 @@ def _serve(s: Run, me: int, now_ps: int) -> None:
 @kernel
 def _go_on(s: Run, me: int, next_ps: int) -> None:
     """What a PE or thread has sent travels; its next instant comes, or it sleeps."""
-    for i in range(s.n_sent):
-        _travel(s, outbox(s)[i])
+    if s.n_sent > 0:
+        _carry(s)
     processes(s)[me].asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
     if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
 
 
 @kernel
-def _travel(s: Run, message: int) -> None:
-    m = messages(s)[message]
-    if s.contends:
-        push(s, m.head_ps, HEAD + m.source, m.number, message)
-    else:
-        push(s, m.arrival_ps, _arrival_rank(m), m.number, message)
+def _carry(s: Run) -> None:
+    """Messages of the outbox travel."""
+    for i in range(s.n_sent):
+        row = outbox(s)[i]
+        m = messages(s)[row]
+        if s.contends:
+            push(s, m.head_ps, HEAD + m.source, m.number, row)
+        else:
+            push(s, m.arrival_ps, _arrival_rank(m), m.number, row)
 
 
 @kernel

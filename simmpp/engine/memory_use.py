@@ -36,7 +36,8 @@ class MemoryUse:
     """1 if the capacity is enough: for what is needed at least and, with ``flow: none``, for all
     that was held."""
     exceeds_bytes: int
-    """With ``flow: none``, by how much more was held."""
+    """With ``flow: none``, by how much more was held; of what was not begun, by how much more is
+    needed."""
     infeasible: int
     """1 if the run could not be brought to its end."""
     reason: str = ""

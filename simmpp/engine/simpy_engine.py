@@ -59,7 +59,7 @@ def _serve(runs: NDArray[np.void], me: int, message: int, now_ps: int) -> int:
 def _send_back(runs: NDArray[np.void], message: int) -> bool:
     """Answer a message that has arrived, if a network card does."""
     s: Run = runs[0]
-    if not is_get(s, messages(s)[message]):
+    if not is_get(messages(s)[message]):
         return False
     send_back(s, message)
     return True

@@ -45,12 +45,12 @@ def _told(unlike: Any) -> str:
 
 def _line(key: str, known: Known) -> Line:
     ends = () if known.is_exact else (known.low, known.high)
-    span = " to ".join(_written(key, end) for end in ends)
-    return Line(key, _written(key, known.value), span, known.source)
+    span = " to ".join(text_of(key, end) for end in ends)
+    return Line(key, text_of(key, known.value), span, known.source)
 
 
-def _written(key: str, number: int) -> str:
-    """A number with its unit, as the field of that dotted key writes it."""
+def text_of(key: str, number: int) -> str:
+    """A constant with its unit, as a user would set that dotted key to it."""
     model: Any = Constants
     parts = key.split(".")
     while len(parts) > 1:

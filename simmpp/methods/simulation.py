@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.engine.capacity import fits, needs_of
+from simmpp.engine.capacity import fits, lacking, needs_of
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
@@ -12,12 +12,13 @@ from simmpp.methods.columns import BOUNDED, BY_USE, FURTHER, NUMBERS
 
 
 def simulation(case: Case) -> dict[str, int]:
-    """All integers of a run; of a policy that does not fit into the capacity no more than that."""
+    """All integers of a run; of a policy that does not fit, no more than that and what it lacks."""
     placement = case.place()
     if placement.capacity is not None:
         needs = needs_of(case.workload, case.machine, placement, case.policy)
-        if not fits(needs, placement, int(case.workload.object_bytes.sum())):
-            return {"fits": 0}
+        scene_bytes = int(case.workload.object_bytes.sum())
+        if not fits(needs, placement, scene_bytes):
+            return {"fits": 0, "exceeds_bytes": lacking(needs, placement, scene_bytes)}
     result = simulate(
         case.workload,
         case.machine,

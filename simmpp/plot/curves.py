@@ -19,6 +19,9 @@ PART_COLOURS = {
     "latency": 2,
     "bandwidth": 6,
     "waiting": 2,
+    "objects for good": 0,
+    "fetched objects": 1,
+    "rays received": 2,
     "requests": 0,
     "objects": 1,
     "rays": 3,
@@ -72,6 +75,19 @@ class Stated:
 
 
 @dataclass(frozen=True)
+class Hatched:
+    """A range without points of a curve, for a reason: a hatched strip of its colour."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+    label: str
+    """The curve's, or what the strip is called where there is none."""
+    style: int
+
+
+@dataclass(frozen=True)
 class Scale:
     """An axis: what it shows and in which unit, and how it is divided."""
 
@@ -105,6 +121,7 @@ class Panel:
     """What lines and bands are."""
     legend: str = ""
     """What the curves' labels are, if that needs saying."""
+    hatched: list[Hatched] = field(default_factory=list)
 
     def style_of(self, curve: Curve) -> int:
         """Number of a measured curve's colour and marker: those of one label look the same."""
@@ -131,3 +148,42 @@ class Bars:
     """Heights of each part, one for each bar; the bottom part first."""
     rows: list[int] = field(default_factory=list)
     """Number of the point that a bar shows."""
+
+
+class Tile(NamedTuple):
+    """A place of a map."""
+
+    x: int
+    """Number of its name on the axis."""
+    y: int
+    row: int
+    """Number of the point that it shows."""
+    text: str
+    """What is said of it."""
+
+
+TILE = 0.94
+"""Width and height of tiles, whose places are 1 apart."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """The tiles of a map that have one thing in common."""
+
+    label: str
+    style: int | None
+    """Number of its colour; hatched without one."""
+    tiles: list[Tile]
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """A map over two axes of names, of coloured tiles."""
+
+    title: str
+    x: Scale
+    y: Scale
+    layers: list[Layer]
+
+
+Drawable = Panel | Bars | Tiles

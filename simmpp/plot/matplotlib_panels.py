@@ -18,7 +18,18 @@ from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocat
 from PIL import Image
 
 from simmpp.common.files import replaced
-from simmpp.plot.curves import PART_COLOURS, Bars, Curve, Panel, Scale, Stated
+from simmpp.plot.curves import (
+    PART_COLOURS,
+    Bars,
+    Curve,
+    Drawable,
+    Hatched,
+    Panel,
+    Scale,
+    Stated,
+    Tiles,
+)
+from simmpp.plot.matplotlib_tiles import draw_tiles
 
 STYLES: tuple[dict[str, Any], ...] = (
     {"color": "#0072B2", "marker": "o", "linestyle": "-"},
@@ -74,13 +85,13 @@ class Drawing(Figure):
         return buffer.getvalue()
 
 
-def draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
+def draw(panels: Sequence[Drawable], stem: Path) -> list[Path]:
     """Write the panels side by side as ``stem``.png and ``stem``.svg; returns these."""
     with matplotlib.rc_context(SETTINGS):
         return save(drawing(panels), stem)
 
 
-def drawing(panels: Sequence[Panel | Bars]) -> Drawing:
+def drawing(panels: Sequence[Drawable]) -> Drawing:
     """The panels side by side, at least one."""
     across = min(len(panels), 2 if len(panels) <= MOST_IN_TWOS else 3)
     down = -(-len(panels) // across)
@@ -90,7 +101,12 @@ def drawing(panels: Sequence[Panel | Bars]) -> Drawing:
         for axes in grid.flat[len(panels) :]:
             axes.remove()
         for axes, panel in zip(grid.flat, panels, strict=False):
-            _draw_bars(axes, panel) if isinstance(panel, Bars) else _draw_panel(axes, panel)
+            if isinstance(panel, Tiles):
+                draw_tiles(axes, panel, [style["color"] for style in STYLES])
+            elif isinstance(panel, Bars):
+                _draw_bars(axes, panel)
+            else:
+                _draw_panel(axes, panel)
     return figure
 
 
@@ -119,6 +135,8 @@ def save(figure: Figure, stem: Path) -> list[Path]:
 def _draw_panel(axes: Axes, panel: Panel) -> None:
     for stated in panel.stated:
         _draw_stated(axes, stated)
+    for strip in panel.hatched:
+        _draw_hatched(axes, strip)
     if panel.level is not None:
         axes.axhline(panel.level, color="black", linewidth=0.7, zorder=1.5)
     for curve in panel.curves:
@@ -138,7 +156,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     axes.set_title(title, fontsize=9)
     axes.grid(linewidth=0.3, color="0.8")
     axes.set_axisbelow(True)
-    if panel.curves:
+    if panel.curves or panel.hatched:
         _draw_legend(axes, panel.legend)
 
 
@@ -170,6 +188,18 @@ def _draw_stated(axes: Axes, stated: Stated) -> None:
     corner = (stated.left, stated.low)
     width, height = stated.right - stated.left, stated.high - stated.low
     axes.add_patch(Rectangle(corner, width, height, label=stated.label or None, zorder=0, **STATED))
+
+
+def _draw_hatched(axes: Axes, strip: Hatched) -> None:
+    colour = STYLES[strip.style % len(STYLES)]["color"]
+    corner, width, height = (
+        (strip.left, strip.low),
+        strip.right - strip.left,
+        strip.high - strip.low,
+    )
+    looks: dict[str, Any] = {"facecolor": "none", "edgecolor": colour, "hatch": "////"}
+    axes.add_patch(Rectangle(corner, width, height, zorder=0.5, linewidth=0.6, **looks))
+    axes.plot([], [], color=colour, linestyle=":", linewidth=0.6, label=strip.label)
 
 
 def _draw_curve(axes: Axes, curve: Curve, style: dict[str, Any], panel: Panel) -> None:

@@ -10,7 +10,19 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Sequence
 
-from simmpp.plot.curves import PART_COLOURS, Bars, Curve, Panel, Spread, Stated
+from simmpp.plot.curves import (
+    PART_COLOURS,
+    TILE,
+    Bars,
+    Curve,
+    Drawable,
+    Hatched,
+    Layer,
+    Panel,
+    Spread,
+    Stated,
+    Tiles,
+)
 from simmpp.plot.plotly_axes import Drawn, layout, limited, placed
 
 SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x")
@@ -26,15 +38,20 @@ def script() -> str:
     return str(plotly.offline.get_plotlyjs())
 
 
-def drawn(panel: Panel | Bars) -> Drawn:
+def drawn(panel: Drawable) -> Drawn:
     """A panel as plotly.js takes it, with its title, and a text for those who don't see it."""
-    drawing = _curves(panel) if isinstance(panel, Panel) else _bars(panel)
+    if isinstance(panel, Tiles):
+        drawing = _tiles(panel)
+    else:
+        drawing = _curves(panel) if isinstance(panel, Panel) else _bars(panel)
     return drawing | {"title": panel.title, "alt": alt_text(panel)}
 
 
-def alt_text(panel: Panel | Bars) -> str:
+def alt_text(panel: Drawable) -> str:
     """What a panel shows, for those who don't see it."""
-    if isinstance(panel, Bars):
+    if isinstance(panel, Tiles):
+        parts = [f"{layer.label} {len(layer.tiles)} of the tiles" for layer in panel.layers]
+    elif isinstance(panel, Bars):
         parts = [f"{name} {_span(heights)}" for name, heights in panel.parts.items()]
     else:
         measured = [curve for curve in panel.curves if not curve.is_guide]
@@ -55,6 +72,7 @@ def _curves(panel: Panel) -> Drawn:
         _guide(curve) if curve.is_guide else _line(curve, panel.style_of(curve) % N_COLOURS, panel)
         for curve in panel.curves
     ]
+    traces = [*(_hatched(strip) for strip in panel.hatched), *traces]
     drawing = layout(panel.x, limited(panel))
     drawing["shapes"] = [_stated(stated) for stated in panel.stated]
     drawing["annotations"] = [_remark(stated, panel) for stated in panel.stated if stated.label]
@@ -63,6 +81,23 @@ def _curves(panel: Panel) -> Drawn:
     if any(curve.notes for curve in panel.curves):
         drawing["margin"] = {"t": 22, "r": 30}  # room for what stands beside the outermost points
     return {"data": traces, "layout": drawing}
+
+
+def _hatched(strip: Hatched) -> Drawn:
+    """A strip, which goes with the curve of its name; legends show the curve, if there is one."""
+    style = strip.style % N_COLOURS
+    return {
+        "type": "scatter",
+        "name": html.escape(strip.label),
+        "legendgroup": strip.label,
+        "x": [strip.left, strip.right, strip.right, strip.left],
+        "y": [strip.low, strip.low, strip.high, strip.high],
+        "mode": "lines",
+        "line": {"color": f"var(--c{style})", "width": 1, "dash": "dot"},
+        "fill": "toself",
+        "fillpattern": {"shape": "/", "size": 7, "solidity": 0.2, "fgcolor": f"var(--c{style})"},
+        "hoverinfo": "skip",
+    }
 
 
 def _guide(curve: Curve) -> Drawn:
@@ -179,3 +214,30 @@ def _bars(bars: Bars) -> Drawn:
         for part, heights in bars.parts.items()
     ]
     return {"data": traces, "layout": axes}
+
+
+def _tiles(tiles: Tiles) -> Drawn:
+    """Bars of height 1 that begin where their tile does."""
+    axes = layout(tiles.x, tiles.y) | {"barmode": "overlay"}
+    return {"data": [_layer(layer) for layer in tiles.layers], "layout": axes}
+
+
+def _layer(layer: Layer) -> Drawn:
+    marker: Drawn = {"color": f"var(--c{(layer.style or 0) % N_COLOURS})", "line": {"width": 0}}
+    if layer.style is None:
+        pattern = {"shape": "/", "size": 8, "solidity": 0.2, "fgcolor": "var(--muted)"}
+        marker |= {"color": "var(--stated-line)", "pattern": pattern | {"bgcolor": "rgba(0,0,0,0)"}}
+    return {
+        "type": "bar",
+        "name": html.escape(layer.label),
+        "legendgroup": layer.label,
+        "x": [tile.x for tile in layer.tiles],
+        "y": [TILE] * len(layer.tiles),
+        "base": [tile.y - TILE / 2 for tile in layer.tiles],
+        "width": [TILE] * len(layer.tiles),
+        "customdata": [tile.row for tile in layer.tiles],
+        "text": [
+            f"<b>{html.escape(layer.label)}</b><br>{html.escape(t.text)}" for t in layer.tiles
+        ],
+        "marker": marker,
+    }

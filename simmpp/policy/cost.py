@@ -8,6 +8,8 @@ Decided here, as measured on T3E, a CPU and a GPU cluster: a ray's time is what 
 all that the PE does (messages made it look loaded where they are dear, and it sent too little);
 rays go to any PE that holds what they need, half of the difference, so that no one is flooded; and
 no minimal load, as sending what is soon wanted here costs more than it gains by the same estimate.
+What it does not see is the work that a fetch makes for others: where objects are large and serve a
+ray or two it fetches what ray dataflow would send, and takes many times as long.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from functools import partial
 
 from simmpp.common.places import misplaced
 from simmpp.config.config import Config
+from simmpp.engine.capacity import fits, needs_of
 from simmpp.engine.record.log import Sink
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result
@@ -92,13 +93,18 @@ def run_point(
     log_of: Callable[[PolicyParameters], Sink | None] = lambda _: None,
     progress: Callable[[str, int], None] | None = None,
 ) -> Iterator[PolicyRun]:
-    """Simulate the policies one after the other, yielding each as it is finished.
+    """Simulate the policies that fit one after the other, yielding each as it is finished.
 
     ``log_of`` gives what gets the event log of a policy's run, if anything. ``progress(title, rays
     left)`` is called now and then.
     """
     settings = point.config.settings
+    scene_bytes = int(point.workload.object_bytes.sum())
     for parameters, named in policies_of(point.config):
+        if point.placement.capacity is not None:
+            needs = needs_of(point.workload, point.machine, point.placement, parameters)
+            if not fits(needs, point.placement, scene_bytes):
+                continue
         began_s = time.perf_counter()
         result = simulate(
             point.workload,

@@ -14,6 +14,7 @@ from simmpp.config.config import Config
 from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns
 from simmpp.methods.simulation import integers
 from simmpp.methods.table import METHODS
+from simmpp.run.fitting import Fitting, fittings
 from simmpp.run.point import Point, PolicyRun
 
 RESULTS, PARQUET = "results.csv", "results.parquet"
@@ -59,6 +60,14 @@ def row(point: Point, run: PolicyRun) -> Row:
     return point_row(point.config, scene, run.parameters.title, point.seed, numbers, effective)
 
 
+def unfit_row(point: Point, policy: Fitting) -> Row:
+    """The row of a policy that does not fit: no more than that, and what it lacks."""
+    numbers = {"fits": 0, "exceeds_bytes": policy.lacking_bytes}
+    effective = 1.0 if policy.parameters.rules.all_resident else point.placement.effective_fraction
+    title, scene = policy.parameters.title, point.workload.name
+    return point_row(point.config, scene, title, point.seed, numbers, effective)
+
+
 def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:
     """Rows sorted by their keys."""
     return sorted(rows, key=lambda row: sort_key(row, (*KEYS, *further, METHOD, "engine")))
@@ -70,7 +79,10 @@ def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     if point.config.memory.capacity is not None:
         uses.add(BOUNDED)
     columns = result_columns(uses=uses)
-    write_csv(in_order(row(point, run) for run in runs), columns, path)
+    rows = [row(point, run) for run in runs]
+    if point.placement.capacity is not None:
+        rows += [unfit_row(point, each) for each in fittings(point) if not each.fits]
+    write_csv(in_order(rows), columns, path)
 
 
 def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:
@@ -83,8 +95,20 @@ def by_place(rows: Iterable[Row], names: Sequence[str]) -> Places:
 
 
 def finished(seeds: Seeds) -> Seeds:
-    """Those that did not fail."""
-    return {seed: row for seed, row in seeds.items() if not row["error"]}
+    """Those that came to their end."""
+    return {seed: row for seed, row in seeds.items() if has_ended(row)}
+
+
+def has_ended(row: Row) -> bool:
+    """Whether it is of a run that came to its end; others failed, did not fit or were stuck."""
+    return not row["error"] and row.get("makespan_ps") != ""
+
+
+def is_unfit(row: Row) -> bool:
+    """Whether a policy did not fit into the memory of the PEs, or came to no end in it."""
+    return not (row["error"] or has_ended(row)) and (
+        row.get("fits") == 0 or row.get("infeasible") == 1
+    )
 
 
 def pairs(above: Seeds, below: Seeds) -> list[tuple[Row, Row]]:

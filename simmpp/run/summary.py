@@ -11,6 +11,7 @@ from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
+from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.workload.describe import primaries
@@ -47,7 +48,7 @@ def heading(point: Point) -> str:
 def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
     base, ceiling = reference_of(runs).result, ceiling_of(runs)
     lines: list[tuple[str, Cell]] = [
-        ("makespan", lambda run: format_ps(run.result.makespan_ps)),
+        ("makespan", _makespan),
         ("time profit", lambda run: _times(ratio(base.makespan_ps, run.result.makespan_ps))),
     ]
     if ceiling:
@@ -68,6 +69,11 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
         ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
     ]
+
+
+def _makespan(run: PolicyRun) -> str:
+    use = run.result.memory
+    return "stuck" if use and use.infeasible else format_ps(run.result.makespan_ps)
 
 
 def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
@@ -169,12 +175,19 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
+def _stuck(runs: Sequence[PolicyRun]) -> list[str]:
+    """Runs that came to no end, as no PE may escape."""
+    uses = [(run.parameters.title, run.result.memory) for run in runs]
+    return [f"{title}: {use.reason}" for title, use in uses if use and use.reason]
+
+
 def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     """The bound, the best classical dataflow, and what the user may not expect of the runs."""
     speed = total_speed(point.machine.speed, point.machine.processors)
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, _best_classical(runs), *_memory(point, runs), *_idle_at_first(point)]
+    lines += [*told(point), *_stuck(runs)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

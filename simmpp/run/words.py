@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from simmpp.common.units import format_bytes
 from simmpp.config.keys import keys
 
 PAPER_WORDS = {
@@ -17,7 +18,13 @@ PAPER_WORDS = {
     "cost": "dataflow by estimated costs",
 }
 """Policies in the paper's words; a label of the user stays as it is."""
-ALONG = {"fraction": "the fraction of the scene", "processors": "the number of PEs"}
+CAPACITY, UNBOUNDED = "memory.capacity", "none"
+"""The key whose values are bytes, and its value where memory has no end."""
+ALONG = {
+    "fraction": "the fraction of the scene",
+    "processors": "the number of PEs",
+    CAPACITY: "the memory of a PE",
+}
 ACTIONS = {
     "object": "Fetch the objects",
     "ray": "Send the rays",
@@ -32,6 +39,7 @@ CAUSES = {
     "scene": "the scene",
     "processors": "the number of PEs",
     "fraction": "the memory",
+    CAPACITY: "the capacity",
     "folder": "the folder",
 }
 """Keys as what decides."""
@@ -56,6 +64,8 @@ def bare(name: str, cell: Any) -> str:
         return "none"
     if name == "fraction":
         return f"{cell * 100:.3g}"
+    if name == CAPACITY:
+        return format_bytes(cell) if is_number(cell) else cell.replace(UNBOUNDED, "unbounded")
     return f"{cell:g}" if isinstance(cell, float) else str(cell)
 
 
@@ -75,6 +85,8 @@ def said(name: str, cell: Any) -> str:
         return f"{cell} PEs" if cell != 1 else "1 PE"
     if name == "fraction":
         return "memory in bytes" if cell == "" else f"x = {value(name, cell)}"
+    if name == CAPACITY:
+        return "unbounded memory" if cell == UNBOUNDED else f"{value(name, cell)} per PE"
     return policy(cell) if name == "policy" else f"{name} {value(name, cell)}"
 
 
@@ -138,6 +150,8 @@ def _framed(name: str, text: str) -> str:
     """Values of a key with what they are of, for those who don't know its name."""
     if name == "processors":
         return f"{text} PE" if text == "1" else f"{text} PEs"
+    if name == CAPACITY:
+        return f"memory per PE {text}"
     return f"memory for {text} of the scene" if name == "fraction" else f"{name} {text}"
 
 

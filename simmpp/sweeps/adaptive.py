@@ -149,17 +149,20 @@ class AdaptiveSampler:
         return seeds_wanted(profits, group.seeds, settings.tolerance, settings.max_seeds)
 
     def _profits(self, group: Group) -> dict[tuple[str, str], list[float]]:
-        """The values of the seeds, in their order, by policy and measure."""
+        """The values of the seeds, in their order, by policy and measure; none if one is missing,
+        for what does not fit into memory has no result."""
         of_policy: dict[str, list[dict[str, int]]] = {}
         for planned in group.points:
             numbers = self._results.outcomes[planned.task.key].numbers
             of_policy.setdefault(planned.point.policy.title, []).append(numbers)
         references = of_policy.pop(REFERENCE)
-        return {
-            (title, measure): profits_of(list(zip(references, runs, strict=True)), column)
-            for title, runs in of_policy.items()
-            for measure, column in MEASURES.items()
-        }
+        found = {}
+        for title, runs in of_policy.items():
+            both = list(zip(references, runs, strict=True))
+            for measure, column in MEASURES.items():
+                values = profits_of(both, column)
+                found[title, measure] = values if len(values) == len(both) else []
+        return found
 
     def _divided(self) -> Iterator[Group]:
         """New comparisons between those of a line that is too coarse."""

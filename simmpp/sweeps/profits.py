@@ -15,7 +15,7 @@ from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CEILING, REFERENCE
 from simmpp.run.profit import efficiency, ratio, speedup
-from simmpp.run.rows import Seeds, by_place, finished, pairs
+from simmpp.run.rows import Seeds, by_place, finished, has_ended, pairs
 from simmpp.sweeps.intervals import interval
 from simmpp.sweeps.stopping import corrected_interval
 
@@ -117,7 +117,7 @@ def best_policy(rows: Iterable[Row], further: Sequence[str] = ()) -> tuple[str, 
     Policies are compared over the points and seeds that all of them have finished; None as long as
     there are none.
     """
-    done = (row for row in rows if not row["error"])
+    done = (row for row in rows if has_ended(row))
     places = by_place(done, (*PLACE, *further)).values()
     titles = dict.fromkeys(title for policies in places for title in policies)
     logarithms: dict[str, list[float]] = {title: [] for title in titles if title != CEILING}

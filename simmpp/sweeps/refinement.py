@@ -101,8 +101,8 @@ def too_coarse(xs: Sequence[Fraction], curves: Sequence[Curve], tolerance: Fract
     """Numbers i of the intervals from xs[i] to xs[i + 1] where a curve needs another point."""
     off = [0.0] * (len(xs) - 1)
     for curve in curves:
-        if not all(map(math.isfinite, (value for values in curve for value in values))):
-            continue  # something over nothing: no number of points makes a line of it
+        if not all(values and all(map(math.isfinite, values)) for values in curve):
+            continue  # no result, or something over nothing: no number of points makes a line of it
         means = [abs(fmean(values)) for values in curve]
         for i in range(1, len(xs) - 1):
             before, after = xs[i] - xs[i - 1], xs[i + 1] - xs[i]

@@ -74,8 +74,8 @@ def seeds_wanted(
 
 
 def _relative_half_width(values: Sequence[float]) -> float:
-    """Half-width over mean; 0 where more draws would not help."""
-    mean = fmean(values)
+    """Half-width over mean; 0 where more draws would not help, and of what has no result."""
+    mean = fmean(values) if values else 0.0
     return half_width(values, CORRECTED) / mean if math.isfinite(mean) and mean else 0.0
 
 

@@ -37,7 +37,7 @@ def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
     yield _numbers(*(x for light in scene.lights if picture.shadows for x in light.position))
     spawned = [_spawning(material, picture) for material in scene.materials]
     objects = columns_of(scene)
-    of_materials = np.array(spawned, dtype=np.float64).reshape(len(spawned), -1)
+    of_materials = np.array(spawned, dtype=np.float64)  # (m, ...), or (0,) of nothing
     yield sizes_on_the_wire(objects).data
     yield of_materials[objects.materials].data
     yield from (objects.kinds.data, objects.spheres.data, objects.cones.data)

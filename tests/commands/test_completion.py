@@ -77,7 +77,7 @@ def test_scenes_in_parts_as_bash_has_them() -> None:
 
 def test_names() -> None:
     assert completed("run", "--policy", "") == list(POLICIES)
-    assert completed("run", "--policy", "ray,c") == ["ray,concurrent"]
+    assert completed("run", "--policy", "ray,c") == ["ray,concurrent", "ray,cost"]
     assert completed("run", "--engine", "=") == ["compiled", "simpy"]
     assert completed("machine", "t") == ["t3d", "t3e", "t3e-shmem", "tpu-v4"]
     assert completed("reading", "") == ["mixed", "plain"]

@@ -194,6 +194,7 @@ def test_points_that_failed_are_not_said_to_be_equal() -> None:
     written(Path("none"), [failed(r["policy"], r["seed"], fraction=0.1) for r in rows])
     last = [run("compare", "all", other)[1].splitlines()[-1] for other in ("half", "none")]
     assert last == [
-        "compare: 2 points in both (1 of them failed in one or both); nothing moved.",
-        "compare: 2 points in both (2 of them failed in one or both): there is nothing to compare.",
+        "compare: 2 points in both (1 of them without a result in one or both); nothing moved.",
+        "compare: 2 points in both (2 of them without a result in one or both): there is nothing "
+        "to compare.",
     ]

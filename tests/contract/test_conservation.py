@@ -142,12 +142,13 @@ def test_on_one_pe_every_policy_is_replicated(engine: str, case: Case) -> None:
     placement = replace(
         case.placement,
         processors=1,
+        islands=1,
         owners=np.zeros_like(case.placement.owners),
         pixel_pes=np.zeros_like(case.placement.pixel_pes),
         replica_offsets=np.zeros(2, np.int64),
         replica_objects=np.zeros(0, np.int32),
     )
-    machine = replace(case.machine, shape=(1, 1, 1))
+    machine = replace(case.machine, shape=(1, 1, 1), speed=(), straggler=NOBODY)
     alone = replace(case, machine=machine, placement=placement)
     assert_all_are_replicated(engine, alone)
     # T(1): a probe for every activity, then nothing but tests and rays

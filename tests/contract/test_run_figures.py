@@ -180,7 +180,7 @@ def test_counters_are_those_of_the_event_log(case: Case, engine: str) -> None:
 
 
 @pytest.mark.parametrize("engine", list(ENGINES))
-@pytest.mark.parametrize("seed", [227, 363])
+@pytest.mark.parametrize("seed", [32, 170])
 def test_loads_that_never_depart_are_not_counted(seed: int, engine: str) -> None:
     case = with_policy(random_case(seed), refresh_ps=0, sample_ps=None, load_info="piggyback")
     log = counted_run(case, engine)

@@ -20,6 +20,7 @@ from simmpp.engine.result import Result
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.machine import NIC, THREAD
 from simmpp.machine.torus import LINKS
+from simmpp.report.timeline.slices import Timeline, Window, is_of_server
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "100"))
 FIRST_SEED = int(os.environ.get("SIMMPP_TEST_FIRST_SEED", "0"))
@@ -106,3 +107,23 @@ def assert_equal(engine: str, case: Case, seed: int) -> None:
     expected, got = asdict(run("oracle", case)), asdict(run(engine, case))
     for name in expected:
         assert got[name] == expected[name], f"seed {seed}: {name} under {case.policy}"
+
+
+@pytest.mark.parametrize("service", SERVERS)
+def test_timelines_have_both_tracks_of_a_pe_and_every_flight(service: str) -> None:
+    for seed in SEEDS[:20]:
+        case = served(random_case(seed), service, seed)
+        result, machine = result_of("compiled", case), case.machine
+        assert result.log is not None
+        timeline = Timeline(machine.processors, machine.probe_ps, Window(), service)
+        part, last = timeline.add(result.log), timeline.end(result.makespan_ps)
+        own = np.concatenate([part.slices, last.slices])
+        own = own[~is_of_server(own)]
+        lengths_ps = np.bincount(own["pe"], own["end_ps"] - own["time_ps"], machine.processors)
+        assert (lengths_ps == result.makespan_ps).all()
+        assert len(part.in_flight) == 0 or part.in_flight.min() >= 0
+        heads = rows(result, "serve" if service == THREAD else "receive")
+        assert len(part.arrows) == len(heads)
+        of_objects = part.arrows["objects"] > 0
+        assert part.tails_served[of_objects].all()
+        assert (part.tails_ps <= part.arrows["time_ps"]).all()

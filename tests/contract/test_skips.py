@@ -185,7 +185,7 @@ def with_idle_objects(case: Case, n: int) -> Case:
     """The case with n more objects of 0 bytes, owned in turn, that no ray is tested against."""
     workload, placement = case.workload, case.placement
     n_objects = workload.n_objects + n
-    owners = np.arange(n_objects, dtype=np.int32) % placement.processors
+    owners = np.arange(n_objects, dtype=np.int32) % (placement.processors // placement.islands)
     owners[: workload.n_objects] = placement.owners
     more = {
         name: np.concatenate([getattr(workload, name), np.zeros(n, getattr(workload, name).dtype)])

@@ -62,7 +62,7 @@ def shot(made: Scene, origins, directions) -> tuple[np.ndarray, np.ndarray, Geom
     d = d / np.linalg.norm(d, axis=1, keepdims=True)
     n = len(o)
     none = np.full(n, -1, np.int32)
-    rays = RayBatch(o, d, np.full(n, PRIMARY, np.uint8), np.full(n, np.inf), none, none)
+    rays = RayBatch(o, d, np.full(n, PRIMARY, np.uint8), np.full(n, np.inf), none, none, none)
     claims = Intersector(geometry).claims(o, d)
     hits, distances, _, _ = find_itineraries(geometry.shapes, rays, claims)
     return (

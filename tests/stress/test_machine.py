@@ -21,6 +21,7 @@ from simmpp.engine.simulate import ENGINES
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine, TestCost
 from simmpp.machine.torus import hops
+from simmpp.machine.uneven import NOBODY
 from simmpp.run.profit import profits
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "25"))
@@ -45,6 +46,11 @@ def priced(machine: Machine, times: tuple[int, ...], test_ps: int, copy_ps: int)
         machine,
         **named,
         port_gap_ps=named["probe_ps"],
+        compute_startup_ps=named["probe_ps"],
+        least_tests=0,
+        speed=(),
+        noise="0",
+        straggler=NOBODY,
         levels=tuple(replace(level, **of_levels) for level in machine.levels),
         pack=copies,
         unpack=copies,

@@ -53,7 +53,7 @@ def search(geometry, origins, directions, limits=None):
     limits = np.full(n, np.inf) if limits is None else limits
     claims = Intersector(geometry).claims(origins, directions)
     none = np.full(n, -1, dtype=np.int32)
-    rays = RayBatch(origins, directions, kinds, limits, none, none)
+    rays = RayBatch(origins, directions, kinds, limits, none, none, none)
     hits, distances, counts, objects = find_itineraries(geometry.shapes, rays, claims)
     return hits, distances, np.split(objects, np.cumsum(counts)[:-1])
 

@@ -35,7 +35,9 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
     say(_table(result))
     if (more := len(_profits(result)) - PROFITS_SHOWN) > 0:
         say(f"... {more} more in {out / PROFITS}")
-    say(f"\n{len(rows)} rows, {len(failed)} failed: {out / RESULTS}")
+    unfit = int((rows["makespan_ps"].isna() & rows["error"].isna()).sum())
+    of_unfit = f", {unfit} without a result for want of memory" if unfit else ""
+    say(f"\n{len(rows)} rows, {len(failed)} failed{of_unfit}: {out / RESULTS}")
     if settings.tolerance is not None:
         for line in _reached(result, settings.tolerance, settings.max_seeds):
             say(line)

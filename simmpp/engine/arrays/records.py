@@ -111,23 +111,12 @@ PEER = np.dtype(
 )
 ROOM = np.dtype(
     [
-        ("queue_rays", "i8"),  # for how many rays there is room
-        ("share", "i8"),  # bytes for the rays of each other PE
-        ("share_rays", "i8"),  # rays that these are at least, in one message
-        ("fetch_bytes", "i8"),  # for fetched objects
-        ("resident", "i8"),  # bytes of resident objects
         ("reserved", "i8"),  # rays that those which are started may become
+        ("queue_rays", "i8"),  # for how many rays there is room
+        ("resident", "i8"),  # bytes of resident objects
         ("fetched", "i8"),  # bytes of objects asked for, pinned or kept
         ("unread", "i8"),  # bytes of rays in the inbox and in shares, with their headers
-        ("control", "i8"),  # bytes of unread requests, and of headers without rays
-        ("peak_control", "i8"),
         ("peak", "i8"),  # most of resident, fetched, rays, unread together; and what it was made of
-        ("peak_fetched", "i8"),
-        ("peak_queue", "i8"),
-        ("peak_receive", "i8"),
-        ("smallest", "i8"),  # no ray in a share needs room for fewer
-        ("escapes", "i8"),
-        ("credit_messages", "i8"),
         ("first", "i4"),  # received messages of which rays are left, linked through MESSAGE.next
         ("last", "i4"),
         ("stuck", "i4"),  # the ray whose object is on its way to the escape room, or there; or NONE
@@ -135,6 +124,17 @@ ROOM = np.dtype(
         ("stalled", "i4"),  # what the last one has,
         ("since_ps", "i8", (3,)),  # since when,
         ("stalled_ps", "i8", (3,)),  # and how long it was, before
+        ("smallest", "i8"),  # no ray in a share needs room for fewer
+        ("control", "i8"),  # bytes of unread requests, and of headers without rays
+        ("peak_control", "i8"),
+        ("peak_fetched", "i8"),
+        ("peak_queue", "i8"),
+        ("peak_receive", "i8"),
+        ("share", "i8"),  # bytes for the rays of each other PE
+        ("share_rays", "i8"),  # rays that these are at least, in one message
+        ("fetch_bytes", "i8"),  # for fetched objects
+        ("escapes", "i8"),
+        ("credit_messages", "i8"),
     ],
     align=True,
 )

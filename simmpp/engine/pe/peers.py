@@ -64,15 +64,14 @@ def note_exchange(s: Run, me: int, peer_row: int) -> None:
 @kernel
 def hear_load(s: Run, me: int, m: Row, now_ps: int) -> None:
     """Remember the load in a header, and whom rays or objects came from."""
-    if s.listens:
-        peer_row = peer_of(s, me, m.source)
-        # What was got without its owner does not tell the load.
-        if s.service != BY_NIC or m.kind != OBJECT:
-            peer_rows(s)[peer_row].load = m.load
-            peer_rows(s)[peer_row].heard_ps = now_ps
-            peer_rows(s)[peer_row].in_flight = 0
-        if s.refresh_ps != NONE and m.kind in (OBJECT, RAYS):
-            note_exchange(s, me, peer_row)
+    peer_row = peer_of(s, me, m.source)
+    # What was got without its owner does not tell the load.
+    if s.service != BY_NIC or m.kind != OBJECT:
+        peer_rows(s)[peer_row].load = m.load
+        peer_rows(s)[peer_row].heard_ps = now_ps
+        peer_rows(s)[peer_row].in_flight = 0
+    if s.refresh_ps != NONE and m.kind in (OBJECT, RAYS):
+        note_exchange(s, me, peer_row)
 
 
 @kernel

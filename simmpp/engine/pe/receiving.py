@@ -24,7 +24,7 @@ from simmpp.engine.pe.sending import answer, forget
 from simmpp.engine.pe.talking import get_on, hear
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_receive
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, USER
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER
 from simmpp.machine.topology import hops
 
 
@@ -45,7 +45,8 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     else:
         clock_ps = now_ps + unpacking_ps(s, me, message)
         # Heard before an answer is packed, and whatever the message is.
-        hear_load(s, me, m, clock_ps)
+        if s.listens:
+            hear_load(s, me, m, clock_ps)
         s.received += 1
     pe.received_load = 1 if m.kind == LOAD else 0
     part = message
@@ -58,8 +59,8 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         note_load(s, me, clock_ps)
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
-    if s.service == BY_PE:
-        clock_ps = answer(s, me, message, clock_ps)
+    if s.service == BY_PE and (m.kind == REQUEST or m.part != NONE):
+        clock_ps = answer(s, me, message, clock_ps, False)
     if m.kind == USER:
         clock_ps = hear(s, me, message, clock_ps)
     elif m.kind == OBJECT or m.kind == RAYS:

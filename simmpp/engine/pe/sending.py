@@ -38,8 +38,8 @@ from simmpp.engine.network import depart
 from simmpp.engine.pe.bounds.credits import take_owed
 from simmpp.engine.pe.costs import parts_ps, sending_ps
 from simmpp.engine.pe.peers import note_departure_to
-from simmpp.engine.record.counters import note_departure
-from simmpp.engine.record.log import note_send
+from simmpp.engine.record.counters import count_message, note_departure
+from simmpp.engine.record.log import note_answer, note_send
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER, USER_WORDS, WORD_BYTES
 from simmpp.policy.view import View
 
@@ -70,7 +70,7 @@ def send_load(s: Run, me: int, other: int, now_ps: int) -> int:
     row = new_part(s, LOAD, other, s.request_bytes if s.service == BY_NIC else 0)
     if s.service == BY_NIC:
         messages(s)[row].obj = ITS_LOAD
-    return send(s, me, row, now_ps)
+    return send(s, me, row, now_ps, False)
 
 
 @kernel
@@ -79,19 +79,12 @@ def send_user(s: Run, me: int, other: int, view: View, now_ps: int) -> int:
     row = new_part(s, USER, other, USER_WORDS * WORD_BYTES)
     for i in range(USER_WORDS):
         user_words(s)[USER_WORDS * row + i] = view.words[i]
-    return send(s, me, row, now_ps)
+    return send(s, me, row, now_ps, False)
 
 
 @kernel
-def answer(s: Run, me: int, message: int, now_ps: int) -> int:
-    """Send what a message asks for; returns the moment when that has been packed."""
-    row = answer_to(s, message)
-    return send(s, me, row, now_ps) if row != NONE else now_ps
-
-
-@kernel
-def answer_to(s: Run, message: int) -> int:
-    """Make up what a message asks for, all in one message, to who sent it; NONE: nothing."""
+def answer(s: Run, me: int, message: int, now_ps: int, by_thread: bool) -> int:
+    """Send what a message asks for, all in one message, to who sent it."""
     answering, part = NONE, message
     while part != NONE:
         m = messages(s)[part]
@@ -103,7 +96,7 @@ def answer_to(s: Run, message: int) -> int:
             else:
                 _append(s, answering, row)
         part = m.part
-    return answering
+    return send(s, me, answering, now_ps, by_thread) if answering != NONE else now_ps
 
 
 @kernel
@@ -145,7 +138,7 @@ def _append(s: Run, message: int, part: int) -> None:
 def post(s: Run, me: int, row: int, now_ps: int) -> int:
     """Send what a dispatch has decided on, or put it to what else goes to that PE."""
     if s.packing == SINGLY:
-        return send(s, me, row, now_ps)
+        return send(s, me, row, now_ps, False)
     m = messages(s)[row]
     place = _place(s, me, m)
     if _is_get(s, m):
@@ -187,51 +180,43 @@ def send_made_up(s: Run, me: int, now_ps: int) -> int:
     s.n_sent = 0
     clock_ps = now_ps
     for i in range(n):
-        clock_ps = send(s, me, sort_items(s)[i], clock_ps)
+        clock_ps = send(s, me, sort_items(s)[i], clock_ps, False)
     return clock_ps
 
 
 @kernel
-def send(s: Run, me: int, row: int, now_ps: int) -> int:
-    """Pack a message and let it depart."""
-    m = messages(s)[row]
-    m.load = pes(s)[me].load
-    sent_ps = pack(s, me, row, now_ps)
-    if s.logs:
-        note_send(s, me, row, now_ps)
-    if s.record_counters:
-        note_departure(s, m)
-    return sent_ps
-
-
-@kernel
-def pack(s: Run, me: int, row: int, now_ps: int) -> int:
-    """Pack a message of a PE, or of its thread, that has the load in it already."""
-    m = messages(s)[row]
-    m.source = me
-    startup_ps = sending_ps(s, me, m.destination, m.kind)
-    m.depart_ps = now_ps + startup_ps + parts_ps(s, row, PACK)
-    set_off(s, m)
-    if s.bounded:
+def send(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> int:
+    """Pack a message and let it depart; a thread does not know the load within an activity."""
+    pe, m = pes(s)[me], messages(s)[row]
+    m.source, m.load, m.number = me, pe.settled_load if by_thread else pe.load, pe.messages_sent
+    m.depart_ps = now_ps + sending_ps(s, me, m.destination, m.kind) + parts_ps(s, row, PACK)
+    depart(s, m)
+    pe.messages_sent += 1
+    sent_by_kind(s)[m.kind] += 1
+    s.bytes_sent += m.payload_bytes + s.header_bytes
+    if s.bounded and s.sends:
         m.credit = take_owed(s, me, m.destination)
     if s.packing != SINGLY:
         _count_parts(s, row)
     if s.refresh_ps != NONE:
         note_departure_to(s, me, m)
+    if s.logs or s.record_counters:
+        _note(s, me, row, now_ps, by_thread)
     outbox(s)[s.n_sent] = row
     s.n_sent += 1
     return m.depart_ps
 
 
 @kernel
-def set_off(s: Run, m: Row) -> None:
-    """A message departs: it is numbered and counted."""
-    pe = pes(s)[m.source]
-    m.number = pe.messages_sent
-    depart(s, m)
-    pe.messages_sent += 1
-    sent_by_kind(s)[m.kind] += 1
-    s.bytes_sent += m.payload_bytes + s.header_bytes
+def _note(s: Run, me: int, row: int, now_ps: int, by_thread: bool) -> None:
+    if s.logs and by_thread:
+        note_answer(s, row, now_ps)
+    elif s.logs:
+        note_send(s, me, row, now_ps)
+    if s.record_counters and by_thread:
+        count_message(s, messages(s)[row], 1)
+    elif s.record_counters:
+        note_departure(s, messages(s)[row])
 
 
 @kernel

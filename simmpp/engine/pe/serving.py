@@ -12,9 +12,8 @@ from simmpp.engine.arrays.records import BEGIN, NONE, SLEEP, Run
 from simmpp.engine.arrays.views import messages, pes
 from simmpp.engine.pe.peers import hear_load
 from simmpp.engine.pe.receiving import unpacking_ps
-from simmpp.engine.pe.sending import answer_to, forget, pack
-from simmpp.engine.record.counters import count_message
-from simmpp.engine.record.log import note_answer, note_serve
+from simmpp.engine.pe.sending import answer, forget
+from simmpp.engine.record.log import note_serve
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST
 
@@ -62,16 +61,9 @@ def _begin(s: Run, me: int, message: int, now_ps: int) -> int:
 def _finish(s: Run, me: int, message: int, now_ps: int) -> int:
     """A message is unpacked: hear the load, answer, hand over; returns the end of that."""
     m = messages(s)[message]
-    hear_load(s, me, m, now_ps)
-    end_ps = now_ps
-    answer = answer_to(s, message)
-    if answer != NONE:
-        messages(s)[answer].load = pes(s)[me].settled_load  # its PE may be in an activity
-        end_ps = pack(s, me, answer, now_ps)
-        if s.logs:
-            note_answer(s, answer, now_ps)
-        if s.record_counters:
-            count_message(s, messages(s)[answer], 1)
+    if s.listens:
+        hear_load(s, me, m, now_ps)
+    end_ps = answer(s, me, message, now_ps, True)
     if m.kind == REQUEST:
         forget(s, message)
     else:

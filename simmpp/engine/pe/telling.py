@@ -42,7 +42,7 @@ def return_credits(s: Run, me: int, now_ps: int) -> int:
         row = new_part(s, LOAD, other, 0)
         messages(s)[row].purpose = FOR_CREDIT
         rooms(s)[me].credit_messages += 1
-        clock_ps = send(s, me, row, clock_ps)
+        clock_ps = send(s, me, row, clock_ps, False)
     return clock_ps
 
 

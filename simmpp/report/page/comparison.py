@@ -109,7 +109,7 @@ def outcome(sweeps: SideBySide) -> str:
     moved = {change.number for change in sweeps.changes}
     sure = {change.number for change in sweeps.changes if change.certainty == BEYOND}
     text = f"{counted(sweeps.common, 'point')} in both"
-    text += f" ({sweeps.failed} of them failed in one or both)" if sweeps.failed else ""
+    text += f" ({sweeps.failed} of them without a result in one or both)" if sweeps.failed else ""
     for name, points in sweeps.only:
         text += f", {len(points)} only {name}" if points else ""
     if sweeps.failed == sweeps.common:

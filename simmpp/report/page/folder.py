@@ -16,7 +16,15 @@ from simmpp.common.folders import is_at_work, last_call
 from simmpp.methods.columns import COLUMNS, FURTHER, KEYS, METHOD, NUMBERS
 from simmpp.run import words
 from simmpp.run.record import read_record
-from simmpp.run.rows import PROFITS, RECORD, RESULTS, TIMINGS, in_order
+from simmpp.run.rows import (
+    PROFITS,
+    RECORD,
+    RESULTS,
+    TIMINGS,
+    has_ended,
+    in_order,
+    is_unfit,
+)
 from simmpp.studies.bench.bench import BENCH
 from simmpp.studies.bench.errors import bench_columns
 from simmpp.studies.nebel98.reproduce import CLAIMS, EXPERIMENTS
@@ -153,7 +161,7 @@ def read_rows(path: Path) -> tuple[list[Row], tuple[str, ...]]:
     further = further_of(texts)
     rows = [_typed(row, path, line) for line, row in enumerate(texts, 2)]
     for line, row in enumerate(rows, 2):
-        if not row["error"] and row["makespan_ps"] == "":
+        if not (row["error"] or has_ended(row) or is_unfit(row)):
             raise ConfigError("expected results or an error", where=str(path), line=line)
     return rows, further
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from statistics import geometric_mean
 
 from simmpp.common.units import SIZES, TIMES
 from simmpp.plot.curves import Spread
+from simmpp.report.page import scales
 from simmpp.run import words
 from simmpp.run.profit import efficiency, speedup
 from simmpp.run.rows import pairs
@@ -136,8 +136,4 @@ ALL = {
 
 def unit_of(measure: Measure, values: Iterable[float]) -> tuple[str, int]:
     """The unit in which typical values have few digits; none, and 1, for ratios."""
-    if not measure.units:
-        return "", 1
-    positive = [value for value in values if value > 0]
-    typical = geometric_mean(positive) if positive else 0.0
-    return next((unit for unit in measure.units if typical >= unit[1]), measure.units[-1])
+    return scales.unit_of(measure.units, values)

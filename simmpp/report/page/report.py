@@ -15,7 +15,13 @@ from simmpp.report.page.arrangement import abscissas
 from simmpp.report.page.beside import beside
 from simmpp.report.page.depth import depth_of
 from simmpp.report.page.figures.figure import Figure, figure_data
-from simmpp.report.page.figures.groups import FIGURE_GROUPS, LIMITS_ID, MACHINES_ID, FigureGroup
+from simmpp.report.page.figures.groups import (
+    CAPACITY_ID,
+    FIGURE_GROUPS,
+    LIMITS_ID,
+    MACHINES_ID,
+    FigureGroup,
+)
 from simmpp.report.page.findings import further, wins
 from simmpp.report.page.folder import Folder, read_folder
 from simmpp.report.page.glossary import glossary
@@ -34,6 +40,8 @@ from simmpp.run.rows import RESULTS
 from simmpp.studies.nebel98.verdict import DOES_NOT, HOLDS, IN_PART
 from simmpp.sweeps.winners.answer import answer
 from simmpp.sweeps.winners.contest import replicated_policies
+from simmpp.sweeps.winners.fit_table import fit_table
+from simmpp.sweeps.winners.knee import knee_table
 from simmpp.sweeps.winners.machines import machines_of
 from simmpp.sweeps.winners.machines_told import machine_table
 from simmpp.sweeps.winners.points import Points, points_of
@@ -45,6 +53,10 @@ LOOK_S = 1.0
 
 LIMITS_SUMMARY = "The fastest dataflow of each case, part by part"
 MACHINES_SUMMARY = "Each machine with each number of nodes"
+FITS_SUMMARY = "Which policies fit where, and what they lack"
+KNEES_SUMMARY = (
+    "The least capacity with a makespan of at most so many times that of unbounded memory"
+)
 
 
 class Table(NamedTuple):
@@ -90,7 +102,7 @@ def report_of(folder: Folder) -> Report:
         folder.rows, folder.further, folder.profits, folder.labels, folder.confidence
     )
     limits = limits_of_points(folder, points)
-    has_runs = any(points.runs)
+    has_runs = any(points.runs) or any(points.unfit)
     figures = {
         group: list(group.figures(folder, limits))
         for group in FIGURE_GROUPS
@@ -154,14 +166,22 @@ def _values(report: Report, is_running: bool, stills: Collection[str]) -> dict[s
         "flows": _flows(report.points),
         "sentences": said,
         "tables": {
-            LIMITS_ID: Table(
-                *("What limits it", "What limits the fastest", LIMITS_SUMMARY),
-                limit_table(report.limits),
-            ),
-            MACHINES_ID: Table(
-                *("Machines in seconds", "Machines in seconds", MACHINES_SUMMARY),
-                machine_table(machines),
-            ),
+            LIMITS_ID: [
+                Table(
+                    *("What limits it", "What limits the fastest", LIMITS_SUMMARY),
+                    limit_table(report.limits),
+                )
+            ],
+            MACHINES_ID: [
+                Table(
+                    *("Machines in seconds", "Machines in seconds", MACHINES_SUMMARY),
+                    machine_table(machines),
+                )
+            ],
+            CAPACITY_ID: [
+                Table("What fits", "What fits", FITS_SUMMARY, fit_table(points)),
+                Table("Knees", "Knees", KNEES_SUMMARY, knee_table(points)),
+            ],
         },
         "wins": wins(points),
         "along": {"policy": "", "fraction": "scene in memory"}.get(along, along),

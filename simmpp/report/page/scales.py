@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from statistics import geometric_mean
 from typing import Any
 
+from simmpp.common.units import SIZES
 from simmpp.plot.curves import ON_EACH_PE, PERCENT, Scale
 from simmpp.run import words
 
@@ -35,8 +37,21 @@ def abscissa(name: str, values: list[Any]) -> tuple[Scale, dict[Any, float]]:
     if name == "processors":
         ticks = (*places.values(),)
         return Scale("processing elements (PEs)", is_log=True, ticks=ticks), places
+    if name == words.CAPACITY:
+        unit, size = unit_of(SIZES, values)
+        places = {number: number / size for number in values}
+        return Scale(f"memory of a PE ({unit})", is_log=is_log(values)), places
     unit = words.unit_of(name)
     return Scale(f"{name} ({unit})" if unit else name, is_log=is_log(values)), places
+
+
+def unit_of(units: Sequence[tuple[str, int]], values: Iterable[float]) -> tuple[str, int]:
+    """The unit in which typical values have few digits; none, and 1, without units."""
+    if not units:
+        return "", 1
+    positive = [value for value in values if value > 0]
+    typical = geometric_mean(positive) if positive else 0.0
+    return next((unit for unit in units if typical >= unit[1]), units[-1])
 
 
 def is_log(values: Iterable[float]) -> bool:

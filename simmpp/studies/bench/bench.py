@@ -20,6 +20,7 @@ from simmpp.methods.columns import PLACE
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.policy.parameters import DEFAULT_POLICY, REFERENCE
 from simmpp.run.provenance import result_versions
+from simmpp.run.rows import has_ended
 from simmpp.studies.bench.errors import CPU, Rung, bench_columns, bench_rows, rungs
 from simmpp.studies.bench.figure import bench_panels
 from simmpp.studies.nebel98.figures import NAMES
@@ -77,7 +78,7 @@ def bench(
 def _written(plans: Mapping[str, Plan], journal: Journal, out: Path, watcher: Watcher) -> Bench:
     full, outcomes = plans[SIMULATE], journal.outcomes
     runs = [row for plan in plans.values() for row in plan.rows(outcomes)]
-    good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if not row["error"]]
+    good = [row | {CPU: outcomes[row[SIMULATION]].cpu_s} for row in runs if has_ended(row)]
     keys = (*PLACE, *full.further)
     trace_s = {
         planned.scene: journal.trace_s[planned.task.digest]

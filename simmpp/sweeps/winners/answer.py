@@ -21,6 +21,7 @@ from simmpp.sweeps.winners.contest import (
     Contest,
     contests_of,
 )
+from simmpp.sweeps.winners.fitting import fit_sentences
 from simmpp.sweeps.winners.machines import Machines
 from simmpp.sweeps.winners.machines_told import machine_sentences
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
@@ -43,7 +44,7 @@ def answer(points: Points, machines: Machines | None = None) -> list[Sentence]:
     """The same of points, with their machines where they are compared."""
     contests = contests_of(points)
     if not contests:
-        return [Sentence("No point has a result.")]
+        return [Sentence("No point has a result."), *fit_sentences(points)]
     if all(contest.certainty == ALONE for contest in contests):
         text = f"Only {_flows(contests)} was run: there is nothing to compare it with."
         lines = [Sentence(text, tuple(cases_of(contests)))]
@@ -52,6 +53,7 @@ def answer(points: Points, machines: Machines | None = None) -> list[Sentence]:
     else:
         of_machines = list(machine_sentences(machines)) if machines else []
         lines = [*told(points, contests), *(of_machines or shortest(points, contests))]
+    lines += fit_sentences(points)
     return [*lines, *_absent(points, contests), *_ceiling(points, contests), *_failed(points)]
 
 
@@ -93,12 +95,13 @@ def _spread(contest: Contest) -> str:
 
 
 def _absent(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
-    """Dataflows that take part in some of the cases only."""
+    """Dataflows that take part in some of the cases only, unless that is for want of memory."""
     counts = Counter(number for contest in contests for number in contest.flows)
+    unfit = {points.flow(n) for n, rows in enumerate(points.unfit) if rows}
     missing = [
         f"{flow} has no result in {len(contests) - number}"
         for flow, number in sorted(counts.items())
-        if number < len(contests)
+        if number < len(contests) and flow not in unfit
     ]
     if missing:
         yield Sentence(f"{words.capital(', '.join(missing))} of {len(contests)} cases.")
@@ -134,7 +137,7 @@ def _held(points: Points, number: int) -> float:
 
 
 def _failed(points: Points) -> Iterator[Sentence]:
-    missing = [n for n, runs in enumerate(points.runs) if not runs]
+    missing = [n for n, runs in enumerate(points.runs) if not (runs or points.unfit[n])]
     if missing:
         names = words.any_of((points.flow(n) for n in missing), "and")
         text = f"{len(missing)} of {counted(len(points.runs), 'point')} failed ({names})."

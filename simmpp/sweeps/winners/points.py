@@ -14,9 +14,10 @@ from simmpp.common.files import Row, sort_key
 from simmpp.methods.columns import KEYS, PLACE
 from simmpp.policy.parameters import CLASSICAL, REFERENCE
 from simmpp.run import words
-from simmpp.run.rows import Seeds, by_place, finished, pairs
+from simmpp.run.rows import Seeds, by_place, finished, is_unfit, pairs
 from simmpp.sweeps.intervals import PLAIN
 from simmpp.sweeps.profits import MEASURES, profit_rows, profits_in_order
+from simmpp.sweeps.winners.capacities import in_bytes
 
 KEY_AXES = tuple(name for name in KEYS if name not in ("effective_fraction", "policy", "seed"))
 ACCOUNTS = {account: f"{account}_ps" for account in ("compute", "communication", "waiting")}
@@ -43,6 +44,8 @@ class Points:
     """Policies by label, as far as known."""
     confidence: float = PLAIN
     """Of the quantiles of intervals, which are of 95 % however seeds were chosen."""
+    unfit: Sequence[Sequence[Row]] = ()
+    """Its rows that did not fit into memory, or came to no end there."""
 
     def name(self, number: int) -> str:
         """The policy of a point, where its label is another one's or known; else its label."""
@@ -187,9 +190,9 @@ def points_of(
     these seeds, as when a sweep at work has written one of the two files and not yet the other.
     """
     names = (*PLACE, *further)
-    places = by_place(rows, names)
+    places = by_place(in_bytes(rows), names)
     of_place: dict[tuple[object, ...], dict[str, Row]] = {}
-    for row in known:
+    for row in in_bytes(known):
         of_place.setdefault(tuple(row.get(name) for name in names), {})[row["policy"]] = row
     written: list[Row] = []
     rest: list[Row] = []
@@ -199,14 +202,17 @@ def points_of(
         else:
             rest += (row for seeds in policies.values() for row in seeds.values())
     profits = profits_in_order([*written, *profit_rows(rest, further)], further)
-    seeds = [finished(places[tuple(row[n] for n in names)][row["policy"]]) for row in profits]
-    return Points(profits, seeds, _groups(profits, names), further, labels, confidence)
+    of = [places[tuple(row[n] for n in names)][row["policy"]] for row in profits]
+    unfit = [[row for row in every.values() if is_unfit(row)] for every in of]
+    seeds = [finished(every) for every in of]
+    return Points(profits, seeds, _groups(profits, names), further, labels, confidence, unfit)
 
 
 def points_of_profits(profits: Sequence[Row], further: Sequence[str]) -> Points:
     """Points of which nothing is known but their profits."""
     groups = _groups(profits, (*PLACE, *further))
-    return Points(profits, [{} for _ in profits], groups, tuple(further))
+    nothing: list[Seeds] = [{} for _ in profits]
+    return Points(profits, nothing, groups, tuple(further), unfit=[[] for _ in profits])
 
 
 def _groups(profits: Sequence[Row], names: Sequence[str]) -> list[int]:

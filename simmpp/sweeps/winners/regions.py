@@ -72,6 +72,8 @@ def _extent(name: str, values: list[Any]) -> str:
 
 def _among(name: str, here: list[Any], everywhere: list[Any]) -> str:
     """Some values of an axis; nothing where they are many and leave gaps."""
+    if name == words.CAPACITY and here != [words.UNBOUNDED]:  # which has no size, but is the most
+        here, everywhere = ([v for v in of if v != words.UNBOUNDED] for of in (here, everywhere))
     first, last = everywhere.index(here[0]), everywhere.index(here[-1])
     is_range = last - first + 1 == len(here) > 1 and all(map(words.is_number, everywhere))
     if is_range and first == 0:

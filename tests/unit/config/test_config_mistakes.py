@@ -190,7 +190,7 @@ def test_a_mistake_is_one_line_with_its_place(text: str, line: str) -> None:
     [
         ("processors=0", "--set processors: value 0: expected an integer from 1 to 65536"),
         ("procs=8", "--set procs: unknown key 'procs': did you mean 'processors'?"),
-        ("memory.x=8", "--set memory.x: memory: unknown key 'x': expected one of bytes, fetch"),
+        ("memory.x=8", "--set memory.x: memory: unknown key 'x': expected one of buffers, bytes"),
         ("processors.x=8", "--set processors.x: 'processors' has no keys of its own"),
         ("processors", "--set processors: expected KEY=VALUE, such as processors=8"),
         ("seeds=[1", "--set seeds: broken YAML: expected ',' or ']'"),

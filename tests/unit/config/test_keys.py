@@ -16,14 +16,14 @@ from simmpp.config.config import config_from_mapping, described
 from simmpp.config.keys import default_of, find_keys, key_table, keys, listed_keys, with_table
 from simmpp.config.reading import load_reading
 from simmpp.config.settings import DEFAULT_READING
-from simmpp.machine.constants import OTHERS, key_of
+from simmpp.machine.constants import OTHERS, UNLIKE, key_of
 from simmpp.machine.machine import Machine
 from simmpp.machine.presets import DEFAULT_PRESET, load_preset, preset_names
 
 README = Path(__file__).parents[3] / "configs" / "README.md"
 CONSTANTS = [key_of(field.name) for field in fields(Machine) if field.name not in OTHERS]
 WORDS = ("topology", "service", "contention")
-OTHERWISE = ("shape", "pack", "unpack", "test", "levels", "fat_tree", *WORDS)
+OTHERWISE = ("shape", "pack", "unpack", "test", "levels", "fat_tree", *UNLIKE, *WORDS)
 UNKNOWN = ("power", "price")
 """Constants that some presets have no source for."""
 SCALARS = [key for key in CONSTANTS if key not in (*OTHERWISE, *UNKNOWN)]

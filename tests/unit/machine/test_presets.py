@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from math import inf
+from typing import Any
 
 import pytest
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.strict import structure
 from simmpp.machine.constants import Constants
+from simmpp.machine.listing import text_of
 from simmpp.machine.machine import UNLIMITED, CopyCost, TestCost
 from simmpp.machine.presets import OVERRIDDEN, layered, load_preset, machine, preset_names
 
@@ -59,6 +61,18 @@ def test_ranges_are_numbers_by_the_constant_that_they_are_of() -> None:
     assert known["test.cone"][:3] == (4_000_000, 400_000, 4_000_000)
     assert known["test.per_triangle"].is_exact and not known["quantum"].is_exact
     assert load_preset("t3e-shmem").known["pack.rays.bandwidth"].high == UNLIMITED
+
+
+@pytest.mark.parametrize("name", ["t3e", "gpu-cluster", "cpu-cluster"])
+def test_each_end_of_a_range_can_be_set(name: str) -> None:
+    """Who asks what depends on a constant sets it to what ``text_of`` writes."""
+    for key, known in load_preset(name).known.items():
+        for end in {known.low, known.high}:
+            text = text_of(key, end)
+            overrides: Any = int(text) if text.isdigit() else text
+            for part in reversed(key.split(".")):
+                overrides = {part: overrides}
+            assert structure(Constants, overrides, {}).flat()[key] == end
 
 
 def test_what_is_set_above_a_preset_has_its_own_range_or_none() -> None:

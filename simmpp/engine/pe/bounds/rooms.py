@@ -58,9 +58,9 @@ def note_arrival_of(s: Run, message: int) -> None:
     room = rooms(s)[m.destination]
     if m.kind == RAYS:
         room.unread += s.header_bytes + m.n * s.ray_bytes
+        note_memory(s, m.destination)
     room.control += _control_bytes(s, message)
     room.peak_control = max(room.peak_control, room.control)
-    note_memory(s, m.destination)
 
 
 @kernel

@@ -20,7 +20,7 @@ BAR_HEADROOM = 1.02
 def bar_figures(limits: PointLimits) -> Iterator[Figure]:
     """Parts of the makespan and messages along the best axis, one panel for each policy."""
     points = limits.points
-    yield _figure(
+    yield bar_figure(
         points,
         ACCOUNTS_STEM,
         "What the makespan consists of",
@@ -28,7 +28,7 @@ def bar_figures(limits: PointLimits) -> Iterator[Figure]:
         "share of the makespan (%)",
         lambda number: {k: v * PERCENT for k, v in limits.shares(number).items()},
     )
-    yield _figure(
+    yield bar_figure(
         points,
         MESSAGES_STEM,
         "Messages by kind",
@@ -38,15 +38,17 @@ def bar_figures(limits: PointLimits) -> Iterator[Figure]:
     )
 
 
-def _figure(
+def bar_figure(
     points: Points,
     stem: str,
     title: str,
     note: str,
     label: str,
     heights_of: Callable[[int], dict[str, float]],
+    along: str = "",
 ) -> Figure:
-    along = abscissas(points.axes)[0]
+    """Stacked bars along an axis, the best if none is given; a point without heights has none."""
+    along = along or abscissas(points.axes)[0]
     facet = None if along == "policy" else "policy"
     arrangement = arrange(points.profits, points.axes, along, facet)
     x = scales.abscissa(along, list(arrangement.values))[0]

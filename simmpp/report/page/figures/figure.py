@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from simmpp.common.files import Row
-from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.curves import Bars, Drawable, Tiles
 from simmpp.plot.plotly_panels import drawn
 from simmpp.run import words
 
@@ -21,7 +21,7 @@ class Figure:
     """Of its files, and its name in the page."""
     title: str
     note: str
-    plates: Mapping[str, Sequence[Panel | Bars]]
+    plates: Mapping[str, Sequence[Drawable]]
     """By what they are of; the empty text if there is only one."""
     is_folded: bool = False
     """Shown when it is asked for."""
@@ -43,8 +43,10 @@ class Figure:
         return stems
 
 
-def _size(panel: Panel | Bars) -> int:
-    """Points, or bars, of a panel."""
+def _size(panel: Drawable) -> int:
+    """Points, bars or tiles of a panel."""
+    if isinstance(panel, Tiles):
+        return sum(len(layer.tiles) for layer in panel.layers)
     if isinstance(panel, Bars):
         return len(panel.rows)
     return sum(len(curve.points) for curve in panel.curves)

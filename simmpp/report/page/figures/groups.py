@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from simmpp.report.page.figures import (
     accuracy,
     bar_figures,
+    capacity_figures,
     folder_figures,
     machine_figures,
     paper,
@@ -27,6 +28,12 @@ MACHINES = (
     "PEs x makespan: they cost alike only if nodes do. Energy and price are those of machines that "
     "state a PE's power and the price of its hour (simmpp machine NAME), for the time of the run "
     "alone. Click a point to see it in depth."
+)
+CAPACITY_ID = "capacity"
+CAPACITY = (
+    "A policy fits if a PE has room for its objects, one request of each other PE, the largest "
+    "object that it may have to fetch, the rays of one pixel and, if it sends rays, one of each "
+    "other PE. What a capacity lacks is told of one PE. Click a point or a bar to see it in depth."
 )
 LIMITS_ID = "accounts"
 LIMITS = (
@@ -57,6 +64,10 @@ FIGURE_GROUPS = (
     FigureGroup(
         *("paper", "The paper's figures", CLICKING, paper.STEMS),
         lambda folder, limits: paper.paper_figures(folder, limits.points),
+    ),
+    FigureGroup(
+        *(CAPACITY_ID, "What fits into memory", CAPACITY, capacity_figures.STEMS),
+        lambda _, limits: capacity_figures.capacity_figures(limits.points),
     ),
     FigureGroup(
         *(MACHINES_ID, "Machines", MACHINES, machine_figures.STEMS),

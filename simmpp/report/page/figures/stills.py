@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import PANELS
-from simmpp.plot.curves import Bars, Panel
+from simmpp.plot.curves import Drawable, Panel
 from simmpp.report.page.figures.figure import Figure
 from simmpp.sweeps.executors import processes
 
@@ -23,7 +23,7 @@ class Still(NamedTuple):
 
     stem: str
     """Of its files."""
-    panels: list[Panel | Bars]
+    panels: list[Drawable]
 
 
 def stills_of(figures: Sequence[Figure], names: Sequence[str]) -> list[Still]:
@@ -53,14 +53,14 @@ def write_stills(stills: Iterable[Still], folder: Path, workers: int) -> Iterato
             yield drawing.result()
 
 
-def _draw(panels: Sequence[Panel | Bars], stem: Path) -> list[Path]:
+def _draw(panels: Sequence[Drawable], stem: Path) -> list[Path]:
     # Only who draws loads matplotlib, which takes half a second.
     from simmpp.plot.matplotlib_panels import draw
 
     return draw(panels, stem)
 
 
-def titled(panel: Panel | Bars, figure: Figure, plate: str) -> Panel | Bars:
+def titled(panel: Drawable, figure: Figure, plate: str) -> Drawable:
     """A title that says all, as the file stands alone."""
     if isinstance(panel, Panel) and panel.title.startswith("Figure"):
         return panel

@@ -16,7 +16,7 @@ from simmpp.scene.scene import Camera, Cone, Light, Material, Polygon, Scene, Sp
 from simmpp.workload.check import check
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
-from simmpp.workload.trace import tracer
+from simmpp.workload.trace import room
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import REFLECTED, REFRACTED, SHADOW, Workload
@@ -263,10 +263,10 @@ def test_progress_ends_when_all_rays_are_done() -> None:
 
 def test_more_rays_than_numbers_are_refused(monkeypatch) -> None:
     n_rays = trace(load_scene("mountain:2"), SMALL).n_rays
-    monkeypatch.setattr(tracer, "MOST_RAYS", n_rays)
+    monkeypatch.setattr(room, "MOST_RAYS", n_rays)
     assert trace(load_scene("mountain:2"), SMALL).n_rays == n_rays
     for fewer in (n_rays - 1, 575):
-        monkeypatch.setattr(tracer, "MOST_RAYS", fewer)
+        monkeypatch.setattr(room, "MOST_RAYS", fewer)
         with pytest.raises(ConfigError, match=f"mountain:2: .* more than {fewer} rays"):
             trace(load_scene("mountain:2"), SMALL)
 
