@@ -87,7 +87,7 @@ def what_it_fancies(v: View) -> int:
     v.memory[5] += v.held_bytes + v.unasked
     seen = v.object_bytes + v.now_ps + v.holders + v.nothing_else + v.known_load + v.waiting
     seen += v.busy_ps + v.finished + v.fetched * v.released + v.fetch_ps
-    return (seen + v.memory[5] + v.random) % 5 - 1
+    return (seen + v.memory[5] + v.random % 1009) % 5 - 1  # 64 bits hold it
 
 
 def no(v: View) -> bool:

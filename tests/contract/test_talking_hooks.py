@@ -73,7 +73,7 @@ def by_all_that_it_knows(v: View) -> int:
     nothing += v.finished + v.busy_ps + v.compute_ps + v.fetched + v.released
     nothing += v.objects + v.fetch_ps + v.fetch_flight_ps + v.speed + v.other_speed
     nothing += v.words[0] + v.words[3] + v.nothing_else
-    v.memory[1] = (v.memory[1] * 31 + costs + seen + nothing + v.random) % 1000003
+    v.memory[1] = (v.memory[1] * 31 + costs + seen + nothing + v.random % 1009) % 1000003
     v.other = v.memory[1] % (v.nb + 2) - 1
     for i in range(4):
         v.words[i] = v.memory[1] >> i
