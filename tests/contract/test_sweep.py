@@ -93,8 +93,9 @@ def test_rows_are_those_of_single_runs(made: Plan, expected: dict[str, bytes]) -
         placed = make_point(point, workload_of(point), seed)
         runs = [run for run in run_point(placed) if run.parameters.title != "replicated"]
         rows += [row(placed, run) for run in runs]
-    lines = [",".join(map(str, each.values())) for each in in_order(rows)]
-    assert lines == expected["results.csv"].decode().splitlines()[1:]
+    header, *written = expected["results.csv"].decode().splitlines()
+    names = header.split(",")  # what a point makes no use of has no columns
+    assert [",".join(str(each[name]) for name in names) for each in in_order(rows)] == written
 
 
 @pytest.mark.parametrize("name", POLICIES)
