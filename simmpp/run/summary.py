@@ -186,8 +186,8 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     speed = total_speed(point.machine.speed, point.machine.processors)
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
-    lines = [bound, _best_classical(runs), *_memory(point, runs), *_idle_at_first(point)]
-    lines += [*told(point), *_stuck(runs)]
+    lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
+    lines += [*_memory(point, runs), *_idle_at_first(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs
