@@ -22,6 +22,7 @@ def misleading(config: Config, *, is_swept: bool) -> list[str]:
     points = _points(config) if is_swept else [config]
     swept = [key for axis in config.axes.values() for key in keys_of(axis)] if is_swept else []
     lines = [*_long_tori(points), *_own_shares(points, config.axes if is_swept else ())]
+    lines += _without_capacity(config, points)
     for point in points if POLICY in swept else [config]:
         lines += _ignored(point, swept)
     return list(dict.fromkeys(lines))
@@ -72,6 +73,19 @@ def _sharing(point: Config) -> tuple[int, str]:
     """How many PEs own the scene together, and what they are of."""
     islands = point.settings.placement.islands
     return point.processors // islands, f" of each of {islands} islands" if islands > 1 else ""
+
+
+def _without_capacity(config: Config, points: Sequence[Config]) -> Iterator[str]:
+    """What is said of the room on a PE where no PE's memory ends."""
+    said = config.kept_source.data.get("memory")
+    if any(point.settings.memory.capacity is not None for point in points):
+        return
+    for key in ("flow", "escape", "buffers", "fetch"):
+        if isinstance(said, dict) and key in said:
+            told = "without a memory.capacity it decides nothing"
+            if key == "fetch":
+                told += " (room for objects that are kept is memory.transient)"
+            yield str(misplaced(("memory", key), told, config.places))
 
 
 def _ignored(config: Config, swept: Sequence[str]) -> Iterator[str]:

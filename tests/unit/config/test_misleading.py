@@ -76,3 +76,12 @@ def test_fractions_below_what_a_pe_owns_are_the_same() -> None:
     linked = {"processors, memory.fraction": [[8, 0.2], [64, 0.01], [64, 0.05]]}
     assert told(none, sweep=linked) == []  # 1 % and 5 % are of 64 PEs alone
     assert told(processors=8, memory={"bytes": "1 B"}) == []
+
+
+def test_room_in_a_memory_that_does_not_end() -> None:
+    nothing = "without a memory.capacity it decides nothing"
+    kept = f"{nothing} (room for objects that are kept is memory.transient)"
+    assert told(memory={"fetch": "64 kB"}) == [f"memory.fetch: {kept}"]
+    assert told("memory.flow=none") == [f"--set memory.flow: {nothing}"]
+    assert told("memory.flow=none", "memory.capacity=1 GB") == []
+    assert told("memory.flow=none", sweep={"memory.capacity": ["none", "1 GB"]}) == []
