@@ -2,7 +2,8 @@
 
 numba notices that a function's own file has changed, but not the files of the functions that it
 calls or of the constants that it reads. So compiled code is kept in a folder named after the source
-of a module and of all that it imports: what is stale is never found.
+of a module and of all that it imports: what is stale is never found. Copies of the package, as the
+installed one and a checkout, find each other's code.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 from filelock import FileLock
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, _CacheLocator
 from numba.core.registry import CPUDispatcher
 
 from simmpp.common.cache import cache_folder
@@ -69,6 +70,34 @@ class _Kept(FunctionCache):  # type: ignore[misc]
             yield
         except OSError as error:
             _tell_of_cache(error.strerror or str(error))
+
+
+class ByDigest(_CacheLocator):  # type: ignore[misc]
+    """Where numba keeps a function's code: in the folder that is set now, wherever its source lies.
+
+    numba's own locators tell apart equal sources by their paths and times.
+    """
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        self._folder = numba.config.CACHE_DIR
+        self._line = function.__code__.co_firstlineno
+
+    @classmethod
+    def from_function(cls, function: Callable[..., object], _file: str) -> ByDigest:
+        """Numba's constructor."""
+        return cls(function)
+
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """Nothing: the folder's name is a digest of the source."""
+        return ""
+
+    def get_disambiguator(self) -> str:
+        """What tells apart functions of one name in one module."""
+        return str(self._line)
 
 
 @cache  # told once
@@ -146,16 +175,17 @@ def _kept_for(function: Callable[..., object], key: str = "") -> Iterator[bool]:
     functions are kept where they were. What is typed into an interactive session has no source
     whose digest could name a folder.
     """
-    before = numba.config.CACHE_DIR
+    before = numba.config.CACHE_DIR, numba.config.CACHE_LOCATOR_CLASSES
     kept = _file(function.__module__) is not None
     if kept:
         folder = _folder(function.__module__) / key
         numba.config.CACHE_DIR = str(folder)
+        numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{ByDigest.__name__}"
         kept = _is_writable(folder)
     try:
         yield kept
     finally:
-        numba.config.CACHE_DIR = before
+        numba.config.CACHE_DIR, numba.config.CACHE_LOCATOR_CLASSES = before
 
 
 def _is_writable(folder: Path) -> bool:

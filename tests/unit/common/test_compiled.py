@@ -57,6 +57,19 @@ def digest_in(folder: Path, module: str) -> str:
     return done.stdout
 
 
+def test_a_copy_of_the_package_finds_its_code(copy: Path, tmp_path: Path) -> None:
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    environment |= {"SIMMPP_CACHE": str(tmp_path)}
+    hits = PROGRAM + "print(sum(transfer_ps.stats.cache_hits.values()))"
+    printed = [
+        subprocess.run(
+            [sys.executable, "-c", hits], cwd=folder, env=environment, stdout=-1, check=True
+        ).stdout.split()
+        for folder in (PACKAGE.parent, copy)
+    ]
+    assert [each[-1] for each in printed] == [b"0", b"1"]
+
+
 @pytest.mark.parametrize(
     ("edited", "module", "is_covered"),
     [
