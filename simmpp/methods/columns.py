@@ -18,6 +18,7 @@ BOUNDED = "bounded"
 BY_USE = {
     "packs": columns.PACKED_COLUMNS,
     "talks": columns.USER_COLUMNS,
+    "steals": columns.STEAL_COLUMNS,
     "threads": columns.SERVICE_COLUMNS,
     "is uneven": columns.UNEVEN_COLUMNS,
     BOUNDED: memory_use.COLUMNS,
