@@ -167,6 +167,21 @@ def with_other_rays(rng: np.random.Generator, workload: Workload) -> Workload:
     return replace(workload, **used)
 
 
+def with_repeats(rng: np.random.Generator, workload: Workload) -> Workload:
+    """The same rays, some of whose tests are made again at once, or after others."""
+    offsets, objects = workload.itinerary_offsets.tolist(), workload.itinerary_objects
+    itineraries = [objects[i:j] for i, j in pairwise(offsets)]
+    longer = [
+        np.concatenate([np.repeat(one, rng.integers(1, 4, len(one))), one[: rng.integers(0, 3)]])
+        for one in itineraries
+    ]
+    return replace(
+        workload,
+        itinerary_offsets=np.cumsum([0, *map(len, longer)]).astype(np.int64),
+        itinerary_objects=np.concatenate([*longer, np.zeros(0)]).astype(np.int32),
+    )
+
+
 def _children(rng: np.random.Generator, depth: int) -> list[int]:
     """Kinds of the rays that one ray spawns."""
     if depth == 4:
