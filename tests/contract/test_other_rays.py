@@ -24,7 +24,7 @@ SEEDS = range(FIRST_SEED, FIRST_SEED + CASES)
 def other_case(seed: int) -> Case:
     """The random case of a seed with rays of other kinds; each third has a capacity."""
     case, rng = random_case(seed), np.random.default_rng((seed, 20))
-    workload = with_repeats(rng, with_other_rays(rng, case.workload))
+    workload = with_other_rays(rng, with_repeats(rng, case.workload))
     none = np.zeros(0, np.int32)
     workload = replace(workload, root_rounds=none, object_results=none.astype(np.int64))
     case = replace(case, workload=workload)
