@@ -43,7 +43,6 @@ from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
 from simmpp.workload.sources import scene_of
-from simmpp.workload.trace.verify import verify
 
 
 @click.command(
@@ -233,15 +232,15 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    scene, failed = scene_of(point.config.ray_source, "--verify")(), False
+    source, failed = point.config.ray_source, False
     nothing = np.zeros(0, np.int32)
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
         with at_work(f"verifying {run.parameters.title}"):
-            problem = verify(scene, point.config.picture, point.workload, rays, objects)
+            problem = source.verify(point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem is not None
+        failed = failed or problem != ""
     if failed:
         sys.exit(FAILED)

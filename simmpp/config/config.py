@@ -99,6 +99,11 @@ class Config:
         return self.settings.picture
 
     @property
+    def asked(self) -> object:
+        """What is made of the scene: settings that tell its rays from others."""
+        return self.settings.picture
+
+    @property
     def preset(self) -> str:
         """The preset that the machine is, or is based on."""
         return self.own_machine.based_on if self.own_machine else self.settings.machine.preset

@@ -84,7 +84,7 @@ class Plan:
         config = recorded(self.config).items()
         policies = dict.fromkeys((p.point.policy, _told(p.point)) for p in self.points)
         rays = dict.fromkeys(
-            (p.scene + _told(p.point), p.point.config.picture, p.task.digest) for p in self.points
+            (p.scene + _told(p.point), p.point.config.asked, p.task.digest) for p in self.points
         )
         configs = {
             id(p.point.comparison): (p.point.config, _told(p.point)) for p in self.points
@@ -152,7 +152,7 @@ def plan_of(config: Config) -> Plan:
     points: list[PlannedPoint] = []
     for point in grid(config):
         _refuse_unknown(point)
-        inputs = repr((point.config.scene_spec, point.config.picture))
+        inputs = repr((point.config.scene_spec, point.config.asked))
         if inputs not in workloads:
             workloads[inputs] = point.config.ray_source.name_and_digest(point.config.picture)
         name, digest = workloads[inputs]

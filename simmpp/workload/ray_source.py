@@ -4,14 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+from simmpp.common.errors import ConfigError
 from simmpp.scene.scene import Origin, Scene
 from simmpp.workload.picture import Picture
 
 if TYPE_CHECKING:
     from simmpp.workload.trace.tracer import Progress
     from simmpp.workload.workload import Workload
+
+Ints = NDArray[np.int32]
+Flags = NDArray[np.bool_]
+Image = NDArray[np.uint8]
+Columns = dict[str, NDArray[Any]]
+NO_GEOMETRY = "expected a scene to trace; a workload file has rays, but no geometry"
 
 # The tracer and the reader of tables are imported where they are called: with numba they take a
 # second, and neither a checked configuration nor the list of a scene's objects needs them.
@@ -35,6 +45,23 @@ class RaySource(Protocol):
         self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
     ) -> Workload:
         """The workload; ``notice`` is told what of scene or cache is not as one might expect."""
+
+    def draw(self, picture: Picture, workload: Workload, done: Flags | None = None) -> Image:
+        """What comes of the rays, (rows, columns, 3) uint8; of the ``done`` roots (n0,) if given.
+
+        Raises ConfigError where there is no geometry.
+        """
+
+    def verify(
+        self, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
+    ) -> str:
+        """How what these tests give differs from what one processor makes; empty if it does not.
+
+        Raises ConfigError where there is no geometry.
+        """
+
+    def results(self, workload: Workload) -> Columns | None:
+        """What comes of the rays, a row for each object: columns by name; None if all is drawn."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +89,24 @@ class SceneSource:
             for line in told(scene):
                 notice(line)
         return workload_for(scene, picture, progress=progress, notice=notice)
+
+    def draw(self, picture: Picture, workload: Workload, done: Flags | None = None) -> Image:
+        """The picture."""
+        from simmpp.workload.trace.shading import render
+
+        return render(self.scene(), picture, workload, done)
+
+    def verify(
+        self, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
+    ) -> str:
+        """The first difference between the pictures, or between the tests."""
+        from simmpp.workload.trace.verify import verify
+
+        return str(verify(self.scene(), picture, workload, tested_rays, tested_objects) or "")
+
+    def results(self, workload: Workload) -> Columns | None:
+        """None: a picture is all there is."""
+        return None
 
 
 def told(scene: Scene) -> list[str]:
@@ -91,3 +136,17 @@ class FileSource:
         from simmpp.workload.exchange.exchange import import_workload
 
         return import_workload(self.file)
+
+    def draw(self, picture: Picture, workload: Workload, done: Flags | None = None) -> Image:
+        """Refused."""
+        raise ConfigError(NO_GEOMETRY, where=self.file)
+
+    def verify(
+        self, picture: Picture, workload: Workload, tested_rays: Ints, tested_objects: Ints
+    ) -> str:
+        """Refused."""
+        raise ConfigError(NO_GEOMETRY, where=self.file)
+
+    def results(self, workload: Workload) -> Columns | None:
+        """None: what its rays are for is not known here."""
+        return None

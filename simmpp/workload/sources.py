@@ -18,7 +18,7 @@ from simmpp.scene.packed import kind_of
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd.generators import known_names
 from simmpp.workload.exchange.columns import is_workload
-from simmpp.workload.ray_source import RaySource
+from simmpp.workload.ray_source import NO_GEOMETRY, RaySource
 from simmpp.workload.scene_settings import SceneSettings
 
 A_SCENE = "a name such as mountain:5, a file or a mapping"
@@ -92,6 +92,5 @@ def _written(spec: Any) -> Any:
 def scene_of(source: RaySource, where: str) -> Callable[[], Scene]:
     """What makes the scene; ConfigError, naming ``where`` it was asked for, if there is none."""
     if source.scene is None:
-        problem = "expected a scene to trace; a workload file has rays, but no geometry"
-        raise ConfigError(problem, where=where)
+        raise ConfigError(NO_GEOMETRY, where=where)
     return source.scene
