@@ -16,9 +16,9 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pandas as pd
+from bounded import CAPACITY, HERE, LEAST, MS, UNBOUNDED, in_bytes, mean, points, write_outcomes
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from points import CAPACITY, HERE, LEAST, MS, UNBOUNDED, in_bytes, mean, points, write_outcomes
 
 from simmpp.common.files import Row, write_csv
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
@@ -168,8 +168,8 @@ def where_it_fits(curves: Curves) -> pd.Series:
     """The fastest dataflow over the replicated scene at the least capacity that has it."""
     rows = curves.of("replicated")
     rows = rows[rows["bytes"].notna()].sort_values("bytes").groupby(PLACE).first().reset_index()
-    rows = rows.set_index([*PLACE, "bytes"])[MS]
-    return (curves.of_flows.min(axis=1) / rows).dropna()
+    ceiling = rows.set_index([*PLACE, "bytes"])[MS]
+    return (curves.of_flows.min(axis=1) / ceiling).dropna()
 
 
 def same_winner(curves: Curves) -> float:
@@ -202,7 +202,8 @@ def of_stealing(curves: Curves) -> dict[str, float]:
 
 def summary(curves: Curves) -> Iterator[Row]:
     """Slowdowns of each policy by multiples of its least, and knees over the least."""
-    parts = {"all": {}} | {f"{p} PEs": {"processors": p} for p in (8, 24, 64)}
+    parts: dict[str, dict[str, object]] = {"all": {}}
+    parts |= {f"{p} PEs": {"processors": p} for p in (8, 24, 64)}
     parts |= {reading: {"reading": reading} for reading in ("plain", "mixed")}
     parts |= {scene: {"scene": scene} for scene in SCENES}
     for part, places in parts.items():
@@ -220,13 +221,17 @@ def summary(curves: Curves) -> Iterator[Row]:
 def knees(curves: Curves) -> Iterator[Row]:
     """For each policy and place the least capacity, and from where on it is nearly as fast."""
     for policy in curves.policies:
-        least = curves.at_least(policy).set_index(PLACE)["least_bytes"]
-        found = {longer: curves.knee(policy, longer)["bytes"] for longer in LONGER}
-        for place, size in least.items():
-            at = {f"knee_bytes_{k:g}": of.get(place, np.nan) for k, of in found.items()}
-            yield (
-                dict(zip(PLACE, place, strict=True)) | {"policy": policy, "least_bytes": size} | at
-            )
+        table = curves.at_least(policy).set_index(PLACE)[["least_bytes"]].assign(policy=policy)
+        for longer in LONGER:
+            table[f"knee_bytes_{longer:g}"] = curves.knee(policy, longer)["bytes"]
+        for row in table.reset_index().to_dict("records"):
+            cells = {str(name): cell for name, cell in row.items()}
+            yield {k: of if isinstance(of, str) else whole(of) for k, of in cells.items()}
+
+
+def whole(size: float) -> int | str:
+    """Without decimals; nothing where it is not known."""
+    return "" if np.isnan(size) else int(size)
 
 
 def draw(curves: Curves) -> None:

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import matplotlib
 import pandas as pd
+from bounded import HERE, MS, mean, points, write_outcomes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
-from points import HERE, MS, mean, points, write_outcomes
 
 from simmpp.common.files import Row, write_csv
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
@@ -49,12 +49,13 @@ def profits(table: pd.DataFrame) -> pd.DataFrame:
 
 def judged(table: pd.DataFrame) -> Iterator[Row]:
     """F4a and F4d with each kind of memory, as ``claims_concurrent`` judges them."""
-    gains = profits(table)
+    gains = profits(table).reset_index()
     for reading in READINGS:
         for memory in SETTINGS_OF_MEMORY:
-            here = gains.xs((reading, memory), level=("reading", "point")).loc[SCENES]
+            here = gains[(gains["reading"] == reading) & (gains["point"] == memory)]
+            here = here.set_index("scene").drop(columns=["reading", "point"]).loc[SCENES]
             here = here.dropna(axis=1, how="all")
-            first = here.apply(lambda of: of.dropna().iloc[0], axis=1)
+            first = here.bfill(axis=1).iloc[:, 0]
             falls, stays = first < here.max(axis=1), first >= STAYS
             yield {
                 "reading": reading,
@@ -70,10 +71,9 @@ def judged(table: pd.DataFrame) -> Iterator[Row]:
 
 def in_band(gains: pd.DataFrame) -> pd.DataFrame:
     """Whether each profit is in F4a's band, which is another one from half of the scene on."""
-    bands = {x: TIME_BELOW if x < HALF else TIME_ABOVE for x in gains}
-    return gains.apply(
-        lambda of: of.between(bands[of.name][0] * (1 - WIDENED), bands[of.name][1] * (1 + WIDENED))
-    )
+    bands = [TIME_BELOW if float(str(x)) < HALF else TIME_ABOVE for x in gains]
+    low, high = ([band[end] for band in bands] for end in (0, 1))
+    return gains.ge([x * (1 - WIDENED) for x in low]) & gains.le([x * (1 + WIDENED) for x in high])
 
 
 def found(table: pd.DataFrame, rows: list[Row]) -> dict[str, float]:
@@ -111,7 +111,7 @@ def found(table: pd.DataFrame, rows: list[Row]) -> dict[str, float]:
 
 
 def draw(table: pd.DataFrame) -> None:
-    """Time profit over x: a row for each reading, a panel for each scene, a curve for each memory."""
+    """Time profit over x: a row for each reading, a panel for a scene, a curve for each memory."""
     gains = profits(table)
     with matplotlib.rc_context(SETTINGS):
         figure = Figure(figsize=(12, 5.8), layout="constrained")
@@ -119,7 +119,7 @@ def draw(table: pd.DataFrame) -> None:
         for row, reading in zip(grid, READINGS, strict=True):
             for axes, scene in zip(row, SCENES, strict=True):
                 for number, memory in enumerate(SETTINGS_OF_MEMORY):
-                    curve = gains.loc[scene, reading, memory]
+                    curve = gains.xs((scene, reading, memory))
                     style = {"color": STYLES[(number + 3) % 4]["color"], "linewidth": 1.0}
                     style["linestyle"] = "--" if "buffers" in memory else "-"
                     if memory == UNBOUNDED:

@@ -38,18 +38,19 @@ def points(name: str, keys: list[str], folder: Path) -> pd.DataFrame:
 
 def by_point(rows: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
     """Means over seeds of rows as a sweep writes them."""
-    by_place = rows.groupby([key for key in keys if key != CAPACITY])["least_bytes"].max()
+    others = [key for key in keys if key != CAPACITY]
+    by_place = rows.groupby(others)["least_bytes"].max()
     rows = rows[rows["makespan_ps"].notna()].assign(
         log_ms=lambda of: np.log(of["makespan_ps"].astype(float) / 1e9),
         pes_ps=lambda of: of[PER_PE].astype(float).sum(axis=1),
     )
     groups = rows.groupby(keys, dropna=False)
-    table = np.exp(groups[["log_ms"]].mean()).rename(columns={"log_ms": MS})
+    table = pd.DataFrame({MS: np.exp(groups["log_ms"].mean())})
     table[["messages", "escapes"]] = groups[["messages", "escapes"]].mean().astype(float)
     table["tests"] = groups["tests"].mean().astype(float)
     sums = groups[["stalled_send_ps", "pes_ps"]].sum().astype(float)
     table["lacks_credit"] = sums["stalled_send_ps"] / sums["pes_ps"]
-    places = table.index.droplevel(CAPACITY) if CAPACITY in keys else table.index
+    places = pd.MultiIndex.from_frame(table.reset_index()[others])
     table["least_bytes"] = by_place.reindex(places).to_numpy(float)
     return table
 
