@@ -394,6 +394,7 @@ class Bounded(World):
             "peak_control": self.peak_control,
             "credit_messages": sum(m.departure <= end for m in self.credit_messages),
             "escapes": self.escapes,
+            "least_bytes": least,
             "fits": int(capacity >= least and exceeds == 0),
             "exceeds_bytes": exceeds,
             "infeasible": int(self.infeasible),
