@@ -32,8 +32,10 @@ from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, island_of
 from simmpp.workload.exchange.columns import is_workload
 from simmpp.workload.picture import Picture
+from simmpp.workload.radiosity.source import RadiositySource
 from simmpp.workload.ray_source import RaySource
 from simmpp.workload.scene_settings import FILES
+from simmpp.workload.sources import scene_of
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,10 @@ class Config:
     @property
     def ray_source(self) -> RaySource:
         """Where the rays come from."""
-        return self.settings.scene.within(self.folder).source
+        source, radiosity = self.settings.scene.within(self.folder).source, self.settings.radiosity
+        if radiosity is not None:
+            return RadiositySource(scene_of(source, "radiosity"), radiosity)
+        return source
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -101,7 +106,7 @@ class Config:
     @property
     def asked(self) -> object:
         """What is made of the scene: settings that tell its rays from others."""
-        return self.settings.picture
+        return self.settings.radiosity or self.settings.picture
 
     @property
     def preset(self) -> str:

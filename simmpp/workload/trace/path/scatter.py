@@ -89,12 +89,12 @@ def _cosine(seed: int, root: int, event: int, normal: Vector) -> Vector:
             x, y = 2.0 * c - 1.0, 2.0 * d - 1.0
             s = x * x + y * y
         dimension += 1
-    across, along = _basis(normal)
+    across, along = basis_around(normal)
     return normalised(moved(moved(times(math.sqrt(1.0 - s), normal), x, across), y, along))
 
 
 @kernel
-def _basis(n: Vector) -> tuple[Vector, Vector]:
+def basis_around(n: Vector) -> tuple[Vector, Vector]:
     """Two vectors across ``n`` (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
     sign = math.copysign(1.0, n[2])
     a = -1.0 / (sign + n[2])
