@@ -192,6 +192,8 @@ def pixel_costs(point: Point) -> Ints:
     """What the tests and rays of each pixel's tree cost: (rows, columns) ps."""
     workload, machine = point.workload, point.machine
     test_ps = machine.test.of_objects(workload)[workload.itinerary_objects]
+    if len(workload.ray_test_scales):
+        test_ps <<= np.repeat(workload.ray_test_scales, np.diff(workload.itinerary_offsets))
     before_ps = np.concatenate([[0], np.cumsum(test_ps, dtype=np.int64)])
     ray_ps = np.diff(before_ps[workload.itinerary_offsets]) + machine.ray_ps
     return _by_pixel(point, ray_ps)
