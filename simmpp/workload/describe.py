@@ -5,13 +5,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.workload import OBJECT_KINDS, RAY_KINDS, Workload
+from simmpp.workload.workload import (
+    FORM_FACTOR,
+    OBJECT_KINDS,
+    PARTICLE,
+    PRIMARY,
+    RAY_KINDS,
+    Workload,
+)
 
+ROOT_WORDS = {PARTICLE: "particles", FORM_FACTOR: "rays of patches"}
 Fact = dict[str, int | float | str]
 
 
 def primaries(workload: Workload) -> str:
-    """``512 x 512 primary rays``."""
+    """``512 x 512 primary rays``, ``40000 particles``, ``9000 rays of patches in 9 rounds``."""
+    if (kind := int(workload.kinds[0])) != PRIMARY:
+        rounds = f" in {workload.n_rounds} rounds" if workload.n_rounds > 1 else ""
+        return f"{workload.n_primaries} {ROOT_WORDS[kind]}{rounds}"
     rows, columns = workload.picture
     each = f"pixels with {workload.samples} " if workload.samples > 1 else ""
     return f"{columns} x {rows} {each}primary rays"
