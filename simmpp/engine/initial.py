@@ -141,6 +141,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "child_offsets": workload.child_offsets,
         "object_bytes": workload.object_bytes,
         "test_ps": machine.test.of_objects(workload),
+        "test_scales": workload.ray_test_scales,
         "owners": placement.owners,
         "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),

@@ -11,7 +11,7 @@ from typing import Any
 from simmpp.config.config import Config
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
-from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.placement.placement import OF_HOMES, Memory, PlacementRules
 from simmpp.policy.parameters import CEILING, PolicyParameters
 from simmpp.policy.reads import knows_loads, numbers_read, reads
 from simmpp.policy.view import NUMBERS
@@ -39,6 +39,12 @@ class Task:
     """Seeds differ wherever objects are."""
 
 
+def _of_everything(rules: PlacementRules) -> PlacementRules:
+    """What of them matters where everything is in every memory."""
+    owners = rules.owners if rules.pixels in OF_HOMES else PlacementRules().owners
+    return PlacementRules(owners=owners, pixels=rules.pixels)
+
+
 def task_of(point: GridPoint, digest: str) -> Task:
     """The simulation of a point on the workload of that digest.
 
@@ -50,7 +56,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     if settings.method == SIMULATE and not talks and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = policy.rules.all_resident
-    rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
+    rules = _of_everything(settings.placement) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
     machine = constants_of(config)
     is_noisy = machine["noise"] != "0"

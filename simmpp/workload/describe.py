@@ -5,14 +5,33 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.workload import OBJECT_KINDS, RAY_KINDS, Workload
+from simmpp.workload.workload import (
+    FORM_FACTOR,
+    OBJECT_KINDS,
+    PARTICLE,
+    PRIMARY,
+    RAY_KINDS,
+    Workload,
+)
 
 Fact = dict[str, int | float | str]
 
 
+ROOTS_OF = {PARTICLE: "particles", FORM_FACTOR: "rays of patches"}
+"""What roots are called that are no primary rays."""
+
+
+def roots(workload: Workload) -> str:
+    """``primary rays``, or what stands for them."""
+    kind = int(workload.kinds[0]) if workload.n_rays else PRIMARY
+    return ROOTS_OF.get(kind, "primary rays")
+
+
 def primaries(workload: Workload) -> str:
-    """``512 x 512 primary rays``."""
+    """``512 x 512 primary rays``, ``100000 particles``."""
     rows, columns = workload.picture
+    if roots(workload) in ROOTS_OF.values():
+        return f"{workload.n_primaries} {roots(workload)}"
     each = f"pixels with {workload.samples} " if workload.samples > 1 else ""
     return f"{columns} x {rows} {each}primary rays"
 

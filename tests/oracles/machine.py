@@ -175,10 +175,13 @@ class Simulation(Serving):
         """One intersection."""
         self.ledger.tested.append((ray, obj))
         self.get_on(pe)
-        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj))
+        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj, ray))
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
         was_granted = ray in pe.granted
+        if was_granted and self.itineraries[ray][self.positions[ray] :][:1] == [obj]:
+            pe.use(obj)
+            return clock
         pe.granted.discard(ray)
         if pe.stuck == ray:
             pe.stuck, was_granted = None, False

@@ -100,6 +100,7 @@ ARRAYS = {
     "child_offsets": Array(I4),  # (n + 1,)
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
+    "test_scales": Array(I1),  # (n,) tests of this ray cost 2^k of that; empty if all k are 0
     "owners": Array(I4),  # (N,), in each island, counted from its first PE
     # PEs that hold each object for good (CSR); empty where the policy does not want to know.
     "holder_offsets": Array(I8),

@@ -74,7 +74,7 @@ RAY = np.dtype(
     [
         ("tested", "i4"),  # objects of its itinerary that it has been tested against
         ("next", "i4"),  # next ray of the list that this ray is in
-        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("granted", "i4"),  # 1: the next tests of one object use it, fetched and pinned for them
         ("hops", "i4"),  # with record_hops: links crossed for it
     ],
     align=True,
