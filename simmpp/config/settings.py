@@ -37,6 +37,7 @@ from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import NAME, POLICIES, PolicyParameters
 from simmpp.policy.policy import Policy
+from simmpp.workload.particles.settings import Particles
 from simmpp.workload.picture import Picture
 from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.sources import SceneKey
@@ -89,8 +90,9 @@ DEFAULT_READING = "mixed"
 _READING = "a reading of the package such as plain, or a file such as readings/own.yaml"
 ReadingName = Annotated[str, *only(is_line, Expect(_READING, {"type": "string", "minLength": 1}))]
 _FILE = "a file such as ours.yaml"
-ASKED = ("picture", "radiosity")
-"""Keys of which each says what rays of a scene are for."""
+_TRACED = "a scene that is traced"
+ASKED = {"picture": _TRACED, "radiosity": _TRACED, "particles": "scene.cells"}
+"""Keys of which each says what rays are for, and with what it goes."""
 FileName = Annotated[str, *only(is_line, Expect(_FILE, {"type": "string", "minLength": 1}))]
 Tolerance = Annotated[Fraction | None, parsed_by(_tolerance), Expect(_TOLERANCE, _SHARE)]
 
@@ -163,6 +165,8 @@ class Settings(Strict):
     """Rays that are traced."""
     radiosity: Radiosity | None = None
     """Light between patches of the scene, in place of a picture."""
+    particles: Particles | None = None
+    """Particles through the cells of `scene.cells`, in place of a picture."""
     machine: MachineSettings = MachineSettings()
     """What computes it."""
     processors: Annotated[int, *integer(1, MOST_PROCESSORS, "PEs")] = 64
@@ -200,8 +204,10 @@ class Settings(Strict):
     @model_validator(mode="after")
     def _one_thing_is_asked(self) -> Settings:
         given = [key for key in ASKED if key in self.model_fields_set]
-        if given and self.scene.source.has_own_picture:
-            raise mistake(f"{given[0]} goes with a scene that is traced, not with scene.workload")
+        kind, asks = self.scene.kind
+        for key in given:
+            if key not in asks:
+                raise mistake(f"{key} goes with {ASKED[key]}, not with scene.{kind}")
         if len(given) > 1:
             raise mistake(f"expected one of {', '.join(ASKED)}, got {' and '.join(given)}")
         return self

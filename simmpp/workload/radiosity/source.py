@@ -28,6 +28,7 @@ class RadiositySource:
     load: Callable[[], Scene]
     settings: Radiosity
     has_own_picture: bool = True
+    can_draw: bool = True
 
     def scene(self) -> Scene:
         """The scene of patches."""

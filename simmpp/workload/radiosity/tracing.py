@@ -15,7 +15,8 @@ from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.generations import Spawning
 from simmpp.workload.trace.ray_batch import RayBatch
 from simmpp.workload.trace.room import Recorded
-from simmpp.workload.trace.tracer import Made, Progress, Tracing, recorded, threads_of, workload_of
+from simmpp.workload.trace.threads import mapping
+from simmpp.workload.trace.tracer import Made, Progress, Tracing, recorded, workload_of
 from simmpp.workload.workload import Workload
 
 OF_COUNT, OF_POWER = 8, 96
@@ -41,7 +42,7 @@ def trace_patches(
     tracing = Tracing(room.geometry, Intersector(room.geometry), rules, room.name)
     if room.settings.method != GATHERING:  # shots are too small to be worth a thread
         return _shot(room, lambda rays: recorded(tracing, rays, map), progress)
-    with threads_of(threads) as run:
+    with mapping(threads) as run:
         return _gathered(room, lambda rays: recorded(tracing, rays, run, progress))
 
 

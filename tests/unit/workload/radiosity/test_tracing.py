@@ -15,7 +15,7 @@ from simmpp.common.errors import ConfigError, SceneError
 from simmpp.scene.scene import Camera, Material, Polygon, Scene
 from simmpp.workload.check import check
 from simmpp.workload.picture import Picture
-from simmpp.workload.radiosity.points import circle, disc, mirrored
+from simmpp.workload.radiosity.points import disc, mirrored
 from simmpp.workload.radiosity.room import Room, room_of
 from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.radiosity.source import RadiositySource
@@ -170,12 +170,6 @@ def _discs(n: int, points: Floats) -> None:
         points[k, 0], points[k, 1] = disc((k + 0.5) / n, mirrored(k, 2))
 
 
-@njit
-def _circles(turns: Floats, found: Floats) -> None:
-    for k in range(len(turns)):
-        found[k, 0], found[k, 1] = circle(turns[k])
-
-
 def test_points_lie_evenly_on_the_disc() -> None:
     n = 4096
     points = np.empty((n, 2))
@@ -184,13 +178,6 @@ def test_points_lie_evenly_on_the_disc() -> None:
     assert radii.max() < 1
     assert np.abs(np.sort(radii) - (np.arange(n) + 0.5) / n).max() < 0.01
     assert np.abs(points.mean(axis=0)).max() < 0.01
-
-
-def test_sine_and_cosine_are_the_librarys_to_the_last_digits() -> None:
-    turns, found = np.linspace(-1, 1, 101), np.empty((101, 2))
-    _circles(turns, found)
-    expected = np.sin(turns * np.pi / 4), np.cos(turns * np.pi / 4)
-    assert np.allclose(found, np.stack(expected, axis=1), rtol=0, atol=3e-16)
 
 
 def test_a_patch_is_a_polygon_of_its_own() -> None:
