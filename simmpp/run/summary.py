@@ -14,7 +14,7 @@ from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
-from simmpp.workload.describe import primaries
+from simmpp.workload.describe import ROOTS_OF, primaries, roots
 
 Cell = Callable[[PolicyRun], str]
 
@@ -174,6 +174,8 @@ def _idle_at_first(point: Point) -> list[str]:
     if not (idle := nb - len(np.unique(point.placement.pixel_pes))):
         return []
     by_rows = point.config.settings.placement.pixels == "rows"
+    if (of := roots(point.workload)) in ROOTS_OF.values():
+        return [f"{idle} of {counted(nb, 'PE')} start without any of the {of}"]
     picture = counted(rows, "row") if by_rows else f"{columns} x {rows} pixels"
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
