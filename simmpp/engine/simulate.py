@@ -90,7 +90,9 @@ def simulate(
     rows = collector.rows() if record.log is True else None
     use = memory_use(state, placement.capacity, needs)
     work_ps = total_compute_ps(workload, machine) if machine.is_uneven else None
-    return concluded(state, run.arrivals, policy.title, engine, rows, use, machine, work_ps)
+    return concluded(
+        state, run.arrivals, policy.title, engine, rows, use, machine, workload, work_ps
+    )
 
 
 def _check(

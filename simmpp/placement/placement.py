@@ -211,6 +211,8 @@ class Placement:
     """Equal parts of the machine that own the whole scene each."""
     capacity: Capacity | None = None
     """All memory of one PE; None: as much as it takes."""
+    window: int = 1
+    """Rounds of rays that may be there together."""
 
     @property
     def island(self) -> int:
