@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -35,6 +32,7 @@ from simmpp.workload.trace.room import (
     require_numbers,
     require_room,
 )
+from simmpp.workload.trace.threads import Run, mapping
 from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
@@ -42,8 +40,6 @@ BATCH = 65536
 Number = TypeVar("Number", bound=np.generic)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
-Run = Callable[..., Iterable[Any]]
-"""Maps a function on lists, as ``map`` does."""
 
 
 class Tracing(NamedTuple):
@@ -92,26 +88,10 @@ def trace(
         rays = drawn_rays(scene, picture, frame, few_roots(picture.n_roots))
         require_room(picture.n_roots, _recorded(tracing, rays, map), scene.name)
     rays = first_generation(scene, picture, frame)
-    with _threads(threads) as run:
+    with mapping(threads) as run:
         batches = _recorded(tracing, rays, run, progress)
     del rays
     return _workload(scene, picture, geometry, frame, batches)
-
-
-@contextmanager
-def _threads(threads: int | None) -> Iterator[Run]:
-    """What maps a function on batches, in order: this thread, or as many as asked for."""
-    if threads is None:
-        only = getattr(os, "sched_getaffinity", None)
-        threads = len(only(0)) if only else os.cpu_count() or 1
-    if threads == 1:
-        yield map
-        return
-    pool = ThreadPoolExecutor(threads)
-    try:
-        yield pool.map
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 def _recorded(
