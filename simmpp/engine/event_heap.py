@@ -1,7 +1,8 @@
 """The queue of what is going to happen: a binary heap of events, ordered by time and ties.
 
 Ties are broken as in the readable engine: arrivals by (destination, source, send number), then the
-beginning of a round, then the instants of PEs by (PE, number), then heads of messages by (source, send number).
+beginning of a round, then the instants of PEs by (PE, number), then heads of messages by (source,
+send number).
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ from simmpp.engine.residency import (
     resident_bytes,
     row_bytes,
 )
-from simmpp.engine.rounds import first_roots, round_arrays, round_scalars, roots_at_once
+from simmpp.engine.rounds import first_roots, roots_at_once, round_arrays, round_scalars
 from simmpp.engine.state import State
 from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine

@@ -199,7 +199,7 @@ def concluded(
     waiting_ps = makespan_ps - compute_ps - communication_ps
     work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
     (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
-    n_barriers, barrier_ps, round_messages = barriers(workload, machine, state["window"])
+    n_barriers, barrier_ps, round_messages = barriers(state, workload, machine)
     sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():

@@ -66,9 +66,10 @@ def first_roots(workload: Workload, placement: Placement) -> NDArray[np.int64]:
     return np.bincount(pes, minlength=placement.processors)
 
 
-def barriers(workload: Workload, machine: Machine, window: int) -> tuple[int, int, int]:
-    """How many there are in a run, the time of all, and their messages, reductions included."""
-    n = max(0, workload.n_rounds - window)
+def barriers(state: State, workload: Workload, machine: Machine) -> tuple[int, int, int]:
+    """How many there were, the time of all, and their messages, reductions included."""
+    began = int((state.arrays["rounds"]["begin_ps"] != NONE).sum())
+    n = max(0, began - state["window"])
     return n, n * barrier_ps(machine), n * messages_of(machine) * (1 + chooses(workload))
 
 

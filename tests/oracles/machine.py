@@ -259,5 +259,7 @@ def simulate(
         machine.processors, machine.header_bytes, tuple(rule for rule in has if has[rule])
     )
     outcome.memory = simulation.memory_columns()
+    outcome.bytes_sent += simulation.round_messages * machine.header_bytes
+    outcome.round_messages = simulation.round_messages
     outcome.round_ends = simulation.round_ends()
     return outcome

@@ -27,6 +27,7 @@ class Rounds(Bounded):
 
     begins: list[int | None] = field(default_factory=list)
     """When each round begins; None: not known yet."""
+    round_messages: int = 0
     over_ps: list[int] = field(default_factory=list)
     """When the rounds that are over were known to be, as far as rays go."""
 
@@ -84,6 +85,8 @@ class Rounds(Bounded):
             if (then := k + self.placement.window) < self.n_rounds:
                 begin = self.over_ps[k] + barrier_ps(self.machine)
                 self.begins[then] = begin
+                stages = (self.machine.processors - 1).bit_length()
+                self.round_messages += self.nb * stages * (2 if self.chooses() else 1)
                 heapq.heappush(self.queue, ((begin, 0, self.nb, then, 0), "round", None))
 
     def round_ends(self) -> list[int]:

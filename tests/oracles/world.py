@@ -75,6 +75,7 @@ class World:
         if self.rules.all_resident:
             resident = set(range(len(self.owners)))
         all_rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
+        all_rays.sort(key=lambda ray: self.round_of[ray])  # those of a round stay as they are
         window = self.placement.window
         rays = [ray for ray in all_rays if self.round_of[ray] < window]
         share = self.roots_at_once // self.nb
