@@ -42,7 +42,7 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
-from simmpp.workload.sources import scene_of
+from simmpp.workload.sources import require_drawn
 
 
 @click.command(
@@ -136,7 +136,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     refuse_models(config)
     if looks.picture or verify:
-        scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
+        require_drawn(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config, simulating=True))
     require_fitting(point)
     if looks.picture:

@@ -28,5 +28,7 @@ USER_COLUMNS = ("user_messages", "user_dropped")
 """Likewise, in which a policy sends messages of its own."""
 ROUND_COLUMNS = ("barriers", "barrier_ps", "round_messages")
 """Likewise, with rays in rounds that others waited for."""
+STEAL_COLUMNS = ("steal_messages",)
+"""Likewise, in which PEs steal pixels."""
 UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")
 """Likewise, with a machine on which computing is uneven."""

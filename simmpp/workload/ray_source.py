@@ -21,6 +21,7 @@ Ints = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 Columns = dict[str, NDArray[Any]]
+Notice = Callable[[str], None]
 NO_GEOMETRY = "expected a scene to trace; a workload file has rays, but no geometry"
 
 # The tracer and the reader of tables are imported where they are called: with numba they take a
@@ -38,11 +39,15 @@ class RaySource(Protocol):
     def has_own_picture(self) -> bool:
         """Which rays there are is settled, whatever the key ``picture`` says."""
 
+    @property
+    def can_draw(self) -> bool:
+        """What comes of the rays can be drawn, and verified."""
+
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """What the workload is called, and its digest, without tracing it."""
 
     def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+        self, picture: Picture, progress: Progress | None, notice: Notice | None
     ) -> Workload:
         """The workload; ``notice`` is told what of scene or cache is not as one might expect."""
 
@@ -70,6 +75,7 @@ class SceneSource:
 
     scene: Callable[[], Scene]
     has_own_picture: bool = False
+    can_draw: bool = True
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The scene's name; the digest of all that the tracer would read."""
@@ -79,7 +85,7 @@ class SceneSource:
         return scene.name, digest_of(scene, picture)
 
     def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+        self, picture: Picture, progress: Progress | None, notice: Notice | None
     ) -> Workload:
         """From the cache if it was traced before."""
         from simmpp.workload.cache.store import workload_for
@@ -123,6 +129,7 @@ class FileSource:
     file: str
     scene: None = None
     has_own_picture: bool = True
+    can_draw: bool = False
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The file's stem; the digest of what the file holds, which has to be read for it."""
@@ -130,7 +137,7 @@ class FileSource:
         return workload.name, workload.digest
 
     def workload(
-        self, picture: Picture, progress: Progress | None, notice: Callable[[str], None] | None
+        self, picture: Picture, progress: Progress | None, notice: Notice | None
     ) -> Workload:
         """The file's; it says itself what its picture is."""
         from simmpp.workload.exchange.exchange import import_workload

@@ -12,6 +12,7 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps, picoseconds
 from simmpp.run.point import Point, PolicyRun
 from simmpp.run.unfinished import finished_roots
+from simmpp.workload.describe import roots
 from simmpp.workload.trace.shading import save_png
 
 
@@ -47,7 +48,7 @@ def write_unfinished(
         file = path.with_name(f"{path.stem}-{title}{path.suffix}")
         with at_work(f"drawing the picture of {run.parameters.title}"):
             save_png(config.ray_source.draw(config.picture, workload, done), file)
-        share = f"{done.mean():.1%} of {len(done)} primary rays are finished"
+        share = f"{done.mean():.1%} of {len(done)} {roots(workload)} are finished"
         say(f"{run.parameters.title} at {format_ps(until_ps)}: {share}")
         files.append(file)
     return files

@@ -91,7 +91,7 @@ def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     unpacks = message == NONE and s.bounded and can_unpack(s, me)
     reduces = pe.owes_ps > 0
     if message == NONE and not (unpacks or reduces) and not has_ready(s, me):
-        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 or s.steals else SLEEP
     s.activities += 1
     if s.bounded:
         _require_progress(s)

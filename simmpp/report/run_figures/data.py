@@ -85,7 +85,9 @@ class Motion:
     def pictures(self) -> list[str]:
         """Names of the pictures that there are of it."""
         networks = OF_NETWORKS.get(type(self.topology), ())
-        return ["activity", "progress", *networks, "traffic", "memory", "pixels"]
+        # Roots that are no pixels, such as particles, are all in one row.
+        pixels = ["pixels"] if len(self.pixel_owner) > 1 else []
+        return ["activity", "progress", *networks, "traffic", "memory", *pixels]
 
     @property
     def times_ps(self) -> Ints:

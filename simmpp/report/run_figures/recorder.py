@@ -52,4 +52,4 @@ def _draw(name: str, motion: Motion, folder: Path) -> list[Path]:
 def _picture(point: Point) -> NDArray[np.uint8] | None:
     """What was rendered, if there is a scene and not only its rays."""
     source = point.config.ray_source
-    return None if source.scene is None else source.draw(point.config.picture, point.workload)
+    return source.draw(point.config.picture, point.workload) if source.can_draw else None

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
-
 import numpy as np
 
 from simmpp.common.compiled import source_digest
 from simmpp.common.errors import ConfigError
+from simmpp.workload.digest import hashed
 from simmpp.workload.particles.cells import GROUP_BYTES, STATE_BYTES, Cells
 from simmpp.workload.particles.follow import added, batch, empty_tally, follow
 from simmpp.workload.particles.generations import joined
@@ -30,11 +29,11 @@ RESULT_BYTES = 24
 
 def digest_of(cells: Cells, particles: Particles) -> str:
     """Hexadecimal SHA-256 of all that decides where particles fly, and of the source of it."""
-    digest = hashlib.sha256(repr((source_digest(__name__), cells.groups)).encode())
-    digest.update(repr((particles.count, rules_of(particles))).encode())
-    for part in grid_of(cells):
-        digest.update(part.data if isinstance(part, np.ndarray) else repr(part).encode())
-    return digest.hexdigest()
+    said = source_digest(__name__), cells.groups, particles.count, rules_of(particles)
+    grid = grid_of(cells)
+    arrays = [part for part in grid if isinstance(part, np.ndarray)]
+    rest = [part for part in grid if not isinstance(part, np.ndarray)]
+    return hashed([memoryview(repr((said, rest)).encode()), *(array.data for array in arrays)])
 
 
 def trace(
@@ -104,6 +103,6 @@ def _workload(cells: Cells, particles: Particles, grid: Grid, batches: list[Tabl
             object_bytes=np.full(n_cells, STATE_BYTES + GROUP_BYTES * cells.groups, np.int64),
             object_centroids=centroids(grid),
             root_homes=homes(grid, particles.seed, count),
-            object_results=np.full(n_cells, RESULT_BYTES, np.int64),
+            test_deposits=rays.tracks,
         )
     )

@@ -52,6 +52,16 @@ class Tracing(NamedTuple):
     """The scene's, for errors."""
 
 
+class Made(NamedTuple):
+    """What a workload is called, and the shape of its primary rays."""
+
+    name: str
+    digest: str
+    shape: tuple[int, int]
+    """Rows and columns."""
+    passes: int = 1
+
+
 def trace(
     scene: Scene,
     picture: Picture,
@@ -86,15 +96,16 @@ def trace(
     tracing = Tracing(geometry, intersector(geometry), rules, scene.name)
     if picture.render == PATH:
         rays = drawn_rays(scene, picture, frame, few_roots(picture.n_roots))
-        require_room(picture.n_roots, _recorded(tracing, rays, map), scene.name)
+        require_room(picture.n_roots, recorded(tracing, rays, map), scene.name)
     rays = first_generation(scene, picture, frame)
     with mapping(threads) as run:
-        batches = _recorded(tracing, rays, run, progress)
+        batches = recorded(tracing, rays, run, progress)
     del rays
-    return _workload(scene, picture, geometry, frame, batches)
+    made = Made(scene.name, digest_of(scene, picture), picture.shape, picture.passes)
+    return workload_of(scene, made, geometry, frame, batches)
 
 
-def _recorded(
+def recorded(
     tracing: Tracing, rays: RayBatch, run: Run, progress: Progress | None = None
 ) -> list[Recorded]:
     """What is recorded of ``rays`` and of all that they spawn, generation by generation."""
@@ -142,22 +153,28 @@ def _intersected(
     return find_itineraries(geometry.shapes, rays, claims)
 
 
-def _workload(
-    scene: Scene, picture: Picture, geometry: Geometry, frame: Frame, batches: list[Recorded]
+def workload_of(
+    scene: Scene,
+    made: Made,
+    geometry: Geometry,
+    frame: Frame,
+    batches: list[Recorded],
+    **extras: NDArray[Any],
 ) -> Workload:
+    """The workload of all ``batches``, which are used up; ``extras`` are optional arrays of it."""
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, itineraries = map(_emptied, lists)
     objects = columns_of(scene)
-    bounds = boxes_of(objects, frame.origin)
+    bounds, n_roots = boxes_of(objects, frame.origin), made.shape[0] * made.shape[1] * made.passes
     return frozen(
         Workload(
-            name=scene.name,
-            digest=digest_of(scene, picture),
-            picture=picture.shape,
+            name=made.name,
+            digest=made.digest,
+            picture=made.shape,
             kinds=kinds,
             parents=parents,
-            child_offsets=np.cumsum(np.insert(n_children, 0, picture.n_roots), dtype=np.int32),
+            child_offsets=np.cumsum(np.insert(n_children, 0, n_roots), dtype=np.int32),
             pixels=pixels_of(parents),
             hits=hits,
             hit_distances=frame.scene_lengths(distances),
@@ -168,7 +185,8 @@ def _workload(
             object_triangles=geometry.n_triangles,
             object_bytes=sizes_on_the_wire(objects),
             object_centroids=frame.rounded(bounds.mean(axis=1)),
-            samples=picture.passes,
+            samples=made.passes,
+            **extras,
         )
     )
 
