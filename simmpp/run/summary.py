@@ -88,7 +88,9 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  objects", lambda run: f"{run.result.object_parts}"),
         ("  batches of rays", lambda run: f"{run.result.ray_parts}"),
     ]
-    packs, talks = (any(use in run.parameters.uses for run in runs) for use in ("packs", "talks"))
+    packs, talks, steals = (
+        any(use in run.parameters.uses for run in runs) for use in ("packs", "talks", "steals")
+    )
     of_its_own: list[tuple[str, Cell]] = [
         ("  of the policy's own", lambda run: f"{run.result.user_messages}"),
         ("    not sent, too many", lambda run: f"{run.result.user_dropped}"),
@@ -102,6 +104,7 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  rays", lambda run: f"{run.result.ray_messages}"),
         ("  loads", lambda run: f"{run.result.load_messages}"),
         *(of_its_own if talks else []),
+        *([("  for pixels", lambda run: f"{run.result.steal_messages}")] if steals else []),
         *(parts if packs else []),
     ]
 
