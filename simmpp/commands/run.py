@@ -15,7 +15,15 @@ from rich.progress import TaskID
 from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.pictures import until_of, write_picture, write_unfinished
-from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
+from simmpp.commands.parts.recording import (
+    Looks,
+    Recorder,
+    check_timeline,
+    recorders_of,
+    sink_of,
+    warn_of_window,
+)
+from simmpp.commands.parts.results import check_results, write_results
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import (
     FAILED,
@@ -31,7 +39,6 @@ from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
-from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.fitting import require_fitting
@@ -70,6 +77,11 @@ from simmpp.workload.sources import require_drawn
     help="With --picture: also what of it each policy has finished by then, such as '5 ms'.",
 )
 @options.path(
+    "--results",
+    "Write what comes of radiosity or particles, object by object: .csv or .parquet.",
+    metavar="FILE",
+)
+@options.path(
     "--timeline",
     "Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
     metavar="FILE",
@@ -98,6 +110,7 @@ def run_command(
     out: Path | None,
     picture: Path | None,
     until: str | None,
+    results: Path | None,
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
@@ -114,6 +127,7 @@ def run_command(
     tell_files(config)
     options.writable(picture, "--picture", ".png")
     until_ps = until_of(until, picture)
+    check_results(config, results)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -128,7 +142,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-    looks = Looks(picture, until_ps, timeline, window_ps, figures)
+    looks = Looks(picture, until_ps, results, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -141,6 +155,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     require_fitting(point)
     if looks.picture:
         write_picture(point, looks.picture)
+    if looks.results:
+        write_results(point, looks.results)
     runs: list[PolicyRun] = []
     try:
         with recorders_of(point, looks) as recorders:
@@ -151,7 +167,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
     _print(point, runs)
-    _warn_of_window(runs, looks)
+    warn_of_window(runs, looks)
     print_reading(config)
     unfinished: list[Path] = []
     if looks.picture and looks.until_ps is not None:
@@ -205,23 +221,10 @@ def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
         say(note)
 
 
-def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
-    """Say for which runs a timeline has nothing, as they are over before its window begins."""
-    start_ps = looks.window_ps[0] if looks.window_ps else 0
-    over = [
-        f"{run.parameters.title} at {format_ps(run.result.makespan_ps)}"
-        for run in runs
-        if run.result.makespan_ps <= start_ps
-    ]
-    if over and looks.timeline:
-        told = f"nothing happens from {format_ps(start_ps)} on: {', '.join(over)} ended"
-        notice(f"warning: --timeline-window: {told}")
-
-
 def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
-    looked = (looks.picture, *unfinished, looks.timeline, looks.figures)
+    looked = (looks.picture, *unfinished, looks.results, looks.timeline, looks.figures)
     files = [*rows, *filter(None, looked)]
     if files:
         say()

@@ -1,6 +1,6 @@
-"""The Cornell box by radiosity and by Mitsuba 3's path tracer: writes cornell.csv and cornell.png.
+"""The Cornell box by radiosity and by Mitsuba 3's path tracer: writes patches.csv and patches.png.
 
-    python experiments/rays/cornell.py [SEEDS, default 32]
+    python experiments/rays/patches.py [SEEDS, default 16]
 
 Mitsuba's light is that of ../path/cornell.csv: paths of depth 8, so light after at most 7 bounces,
 as here. The floor is cut along the blocks that stand on it: a patch that is half below a block is
@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 import sys
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import mapbox_earcut
@@ -31,7 +32,7 @@ from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.shading import in_bytes, save_png
 
 HERE = Path(__file__).parent
-SETTINGS = Radiosity(patches="0.03%", rays=1024)
+SETTINGS = Radiosity(patches=Fraction(3, 10_000), rays=1024)
 VIEW = simmpp.Picture(
     resolution=1024, samples=4, max_depth=1, shadows=False, reflection=False, refraction=False
 )
@@ -81,14 +82,15 @@ def light_of(room: Room, proposer: Intersector) -> Floats:
         parts = [rays.part(low, low + BATCH) for low in lows]
         claims = [proposer.claims(part.origins, part.directions)[:, 0] for part in parts]
         gathering.take(room.landed(rays, np.concatenate(claims).astype(np.int32)))
-    factors, patches = form_factors(room.n_sides, *gathering.pairs), room.patches
-    return brightness(factors, patches.emitted.repeat(2, 0), patches.reflectance.repeat(2, 0), BOUNCES)
+    factors = form_factors(room.n_sides, *gathering.pairs)
+    emitted, reflectance = room.patches.emitted, room.patches.reflectance
+    return brightness(factors, emitted.repeat(2, 0), reflectance.repeat(2, 0), BOUNCES)
 
 
 def means(image: Floats) -> Floats:
     """Of (PATCHES, PATCHES, 3) patches of the picture."""
     size = len(image) // PATCHES
-    return image.reshape(PATCHES, size, PATCHES, size, 3).mean(axis=(1, 3))  # type: ignore[no-any-return]
+    return image.reshape(PATCHES, size, PATCHES, size, 3).mean(axis=(1, 3))
 
 
 def mitsuba() -> Floats:
@@ -103,7 +105,7 @@ def mitsuba() -> Floats:
 
 def main() -> None:
     """Print and write a row per patch and colour."""
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 32
+    n = int(sys.argv[1]) if len(sys.argv) > 1 else 16
     room = room_of(box(), SETTINGS)
     proposer, lights = Intersector(room.geometry), []
     for seed in range(n):
@@ -125,11 +127,11 @@ def main() -> None:
         for column in range(PATCHES)
         for k, colour in enumerate(COLOURS)
     ]
-    write_csv(rows, list(rows[0]), HERE / "cornell.csv")
+    write_csv(rows, list(rows[0]), HERE / "patches.csv")
     print(np.round(100 * off[:, :, 1], 2))
     print(f"{room.n_sides // 2} patches: largest difference {np.abs(off).max():.2%}")
     print(f"half of the seeds alone: {noise.max():.2%} off the mean")
-    save_png(in_bytes(np.sqrt(image[::2, ::2])), HERE / "cornell.png")
+    save_png(in_bytes(np.sqrt(image[::2, ::2])), HERE / "patches.png")
 
 
 if __name__ == "__main__":
