@@ -37,9 +37,9 @@ def rows_of(name: str) -> pd.DataFrame:
     if not file.exists():
         rows, _ = simmpp.sweep(HERE / f"{name}.yaml")
         keys = [key for key in AXES if key in rows]
-        rows = rows.groupby([*keys, "policy"], as_index=False, sort=True)
-        kept = [column for column in MEASURES if column in rows.obj]
-        rows[kept].mean().to_csv(file, index=False, float_format="%.0f")
+        groups = rows.groupby([*keys, "policy"], as_index=False, sort=True)
+        kept = [column for column in MEASURES if column in rows]
+        groups[kept].mean().to_csv(file, index=False, float_format="%.0f")
     return pd.read_csv(file)
 
 
