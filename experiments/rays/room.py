@@ -25,7 +25,7 @@ WAYS = ("home", "interleaved")
 BELOW = (0.02, 0.1, 0.25)
 COLOURS = {"object": "#d55e00", "ray": "#0072b2", "concurrent": "#009e73"}
 AXES = ["fraction", "memory.transient", "placement.pixels", "placement.rounds"]
-TIMES = ["time_to_residual_10_ps", "time_to_residual_1_ps"]
+TIMES = ["residual_tenth_ps", "residual_hundredth_ps"]
 MEASURES = ["makespan_ps", "messages", "compute_ps", *TIMES]
 PROCESSORS = 64
 Expected = tuple[str, bool, str]
@@ -106,8 +106,8 @@ def of_shooting(rows: Rows, gathering: Rows) -> Iterator[Expected]:
     for x in (*BELOW, 0.5):
         for way in WAYS:
             times = [
-                rows.of("time_to_residual_10_ps", p, x, **at(way))
-                / rows.of("time_to_residual_1_ps", p, x, **at(way))
+                rows.of("residual_tenth_ps", p, x, **at(way))
+                / rows.of("residual_hundredth_ps", p, x, **at(way))
                 for p in POLICIES
             ]
             spans.append(max(times) / min(times) - 1)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
 from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
@@ -58,6 +60,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ]
     return [
         *lines,
+        *_residual_lines(runs),
         *_message_lines(runs),
         ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
         ("rays sent", lambda run: f"{run.result.rays_sent}"),
@@ -68,6 +71,20 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
         ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
         ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+    ]
+
+
+def _residual_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
+    """When little was left to be done, where that is known."""
+
+    def cell(column: str, run: PolicyRun) -> str:
+        time_ps = run.result.residuals_ps.get(column)
+        return "-" if time_ps is None else format_ps(time_ps)
+
+    return [
+        (f"  until {100 * share:g} % is left", partial(cell, column))
+        for column, share in LEFT.items()
+        if any(column in run.result.residuals_ps for run in runs)
     ]
 
 
