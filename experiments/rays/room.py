@@ -39,7 +39,9 @@ def rows_of(name: str) -> pd.DataFrame:
         keys = [key for key in AXES if key in rows]
         groups = rows.groupby([*keys, "policy"], as_index=False, sort=True)
         kept = [column for column in MEASURES if column in rows]
-        groups[kept].mean().to_csv(file, index=False, float_format="%.0f")
+        means = groups[kept].mean()
+        means[kept] = means[kept].round().astype("int64")
+        means.to_csv(file, index=False)
     return pd.read_csv(file)
 
 
