@@ -18,6 +18,7 @@ COMMANDS = {
     "init": "Write a configuration to begin with, each key explained.",
     "run": "Compare dataflow policies at one point.",
     "sweep": "Simulate every combination of the values under the key sweep.",
+    "advise": "Say which policy to use on how many nodes.",
     "report": "Make a page of what sweep, run, bench or reproduce wrote.",
     "compare": "Compare the rows of two folders, point by point.",
     "check": "Compare a sweep with its baseline; exit with 1 if it moved.",

@@ -20,7 +20,7 @@ from simmpp.run.provenance import difference
 from simmpp.sweeps.task import canonical, constants_of, decides
 from simmpp.workload.picture import Picture
 
-GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
+GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine", "advise")
 """Keys of a configuration that say which points there are, and not what they are of."""
 SWEPT, NAMES = "swept", "names"
 """Parts of an identity that grow: keys that are axes, and the meanings that each name has."""

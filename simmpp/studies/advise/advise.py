@@ -1,0 +1,199 @@
+"""The whole of it: a configuration's question, the race of its candidates, and the advice."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf, isfinite
+from pathlib import Path
+from types import NoneType
+
+from simmpp.common.errors import ConfigError
+from simmpp.common.validate import require_kind, require_whole
+from simmpp.config.advice import AdviseSettings
+from simmpp.config.config import Config, config_from_mapping, load_config
+from simmpp.run.inputs import cache_workload, workload_of
+from simmpp.run.point import refuse_models
+from simmpp.studies.advise.bounds import bound_of
+from simmpp.studies.advise.candidates import Candidate, candidates_of, capacity_of, sizes_of
+from simmpp.studies.advise.least import least_nodes
+from simmpp.studies.advise.racing import Ask, Contender, Race
+from simmpp.studies.advise.running import OutOfTime, Run, Runner, Watcher
+from simmpp.studies.advise.sensitivity import Sensitivity, Study, rivals_of
+from simmpp.studies.advise.verdict import Contest, Verdict
+from simmpp.sweeps.executors import pool_for
+from simmpp.sweeps.intervals import MeanInterval, of_logarithms
+from simmpp.sweeps.worker import keep_workload, run_task
+
+NODE_SECONDS = "node-seconds"
+
+
+@dataclass(eq=False)
+class Advice:
+    """What is advised, and all that it was found from."""
+
+    config: Config
+    candidates: list[Candidate]
+    """Also those that do not fit."""
+    bounds: list[int]
+    """Of those that fit, in ps."""
+    contest: Contest
+    verdict: Verdict
+    sensitivity: Sensitivity = field(default_factory=Sensitivity)
+    runs: int = 0
+    """Simulations of the race."""
+    further_runs: int = 0
+    """Simulations with other constants."""
+    broken_off: str = ""
+    """What ended it before it was done, if anything did."""
+    interrupt: KeyboardInterrupt | None = None
+    """Ctrl-C, if it was that."""
+    least_nodes: Candidate | None = None
+    """Where nothing fits, what would with more nodes."""
+
+    @property
+    def asked(self) -> AdviseSettings:
+        """The question."""
+        return self.config.settings.advise or AdviseSettings()
+
+    @cached_property
+    def fitting(self) -> list[Candidate]:
+        """Candidates that fit, by their numbers in the race."""
+        return [candidate for candidate in self.candidates if candidate.fits]
+
+    @property
+    def chosen(self) -> Candidate | None:
+        """What is advised, if anything is."""
+        number = self.verdict.chosen
+        return None if number is None else self.fitting[number]
+
+    def makespan_ps(self, number: int) -> MeanInterval:
+        """Mean and 95 % interval of one that was run."""
+        costs, weight = self.contest.race.costs[number], weight_of(self.asked, self.fitting[number])
+        makespans = [cost / weight for cost in costs.values()]
+        if not self.fitting[number].is_drawn:
+            return MeanInterval(*(makespans[0],) * 3)
+        return of_logarithms(makespans)
+
+    def others(self) -> list[int]:
+        """All that came to an end but the one that is advised, the best first."""
+        race = self.contest.race
+        ended = [n for n in race.costs if n != self.verdict.chosen and isfinite(race.mean(n))]
+        return sorted(ended, key=lambda n: (race.mean(n), self.fitting[n].order))
+
+
+def weight_of(asked: AdviseSettings, candidate: Candidate) -> int:
+    """What a makespan is multiplied by for the goal."""
+    return candidate.processors if asked.goal == NODE_SECONDS else 1
+
+
+def contest_of(config: Config, fitting: list[Candidate], bounds: list[int], run: Runner) -> Contest:
+    """The race of candidates for the goal of the question."""
+    asked = config.settings.advise or AdviseSettings()
+    weights = [weight_of(asked, candidate) for candidate in fitting]
+
+    def measure(asks: Sequence[Ask]) -> dict[Ask, float]:
+        makespans = run([fitting[n].task(seed) for n, seed in asks])
+        found = zip(asks, makespans, strict=True)
+        return {(n, seed): makespan * weights[n] for (n, seed), makespan in found}
+
+    contenders = [
+        Contender(float(bound * weight), candidate.is_drawn)
+        for candidate, bound, weight in zip(fitting, bounds, weights, strict=True)
+    ]
+    limit = float(asked.goal) if isinstance(asked.goal, int) else inf
+    race = Race(contenders, measure, float(asked.indifference))
+    return Contest(race, [candidate.order for candidate in fitting], limit)
+
+
+def advise(
+    config: Config | Mapping[str, object] | str | Path,
+    *,
+    workers: int = 1,
+    cluster: str | None = None,
+    seconds: float | None = None,
+    watcher: Watcher | None = None,
+) -> Advice:
+    """Say which policy on how many nodes: the question is a configuration's key ``advise``.
+
+    Candidates are simulated in this process, in ``workers`` processes or on the Dask ``cluster`` of
+    that address; what comes out is the same. After ``seconds``, if given, or Ctrl-C while it
+    simulates, the advice is what was best until then, with less confidence or none.
+    Raises InputError if the configuration is wrong.
+    """
+    require_kind("config", config, Mapping, Config, str, Path)
+    require_whole("workers", workers, 1)
+    require_kind("cluster", cluster, str, NoneType)
+    require_kind("seconds", seconds, float, int, NoneType)
+    if seconds is not None and not 0 < seconds < inf:
+        raise ConfigError(f"seconds: value {seconds}: expected seconds above 0")
+    if isinstance(config, str | Path):
+        config = load_config(config)
+    elif not isinstance(config, Config):
+        config = config_from_mapping(config)
+    deadline_s = inf if seconds is None else time.monotonic() + seconds
+    watcher = watcher or Watcher()
+    advice = asked_of(config, watcher)
+    if not advice.fitting:
+        return advice
+    with closing(pool_for(workers, cluster, run_task)) as pool:
+        _find(advice, Run(pool, deadline_s, watcher))
+    return advice
+
+
+def asked_of(config: Config, watcher: Watcher) -> Advice:
+    """The question, with its candidates, before anything is simulated."""
+    refuse_models(config)
+    capacity_of(config)
+    workload = workload_of(config, progress=watcher.tracing, notice=watcher.notice)
+    cache_workload(config, workload.digest)
+    keep_workload(workload)
+    candidates = candidates_of(config, workload)
+    fitting = [candidate for candidate in candidates if candidate.fits]
+    bounds = [bound_of(candidate, workload) for candidate in fitting]
+    contest = contest_of(config, fitting, bounds, Run.never())
+    advice = Advice(config, candidates, bounds, contest, contest.verdict())
+    if not fitting:
+        advice.least_nodes = least_nodes(config, workload, max(sizes_of(config)))
+    return advice
+
+
+def _find(advice: Advice, run: Run) -> None:
+    """Race, and see what the winner hangs on; whatever ends it, what is known is kept."""
+    contest = contest_of(advice.config, advice.fitting, advice.bounds, run)
+    advice.contest, study = contest, None
+    try:
+        contest.run()
+        advice.runs = run.count
+        advice.verdict = contest.verdict()
+        study = study_of(advice, run)
+        if study is not None:
+            study.work()
+    except OutOfTime:
+        advice.broken_off = "the time was over"
+    except KeyboardInterrupt as interrupt:
+        advice.broken_off, advice.interrupt = "interrupted", interrupt
+    if study is None:
+        advice.runs, advice.verdict = run.count, contest.verdict()
+    else:
+        advice.further_runs, advice.sensitivity = run.count - advice.runs, study.result()
+
+
+def study_of(advice: Advice, run: Runner) -> Study | None:
+    """What is to be done about the constants; None if nothing is advised."""
+    chosen, asked = advice.chosen, advice.asked
+    if chosen is None:
+        return None
+    is_limited = isinstance(asked.goal, int)
+    others = [] if is_limited else [advice.fitting[n] for n in advice.others()]
+    return Study(
+        chosen,
+        rivals_of(chosen, others),
+        run,
+        lambda candidate: weight_of(asked, candidate),
+        float(asked.indifference),
+        advice.contest.limit,
+    )
