@@ -77,7 +77,14 @@ def advise_command(
     announce_compilation()
     began_s = time.monotonic()
     with advice_bar() as watcher:
-        advice = advise(config, workers=workers, cluster=cluster, seconds=seconds, watcher=watcher)
+        advice = advise(
+            config,
+            workers=workers,
+            cluster=cluster,
+            seconds=seconds,
+            maps=out is not None,
+            watcher=watcher,
+        )
     print_advice(advice)
     notice(f"{advice.runs + advice.further_runs} runs, {time.monotonic() - began_s:.0f} s")
     if out is not None:

@@ -14,6 +14,7 @@ from simmpp.common.files import write_csv
 from simmpp.common.yamlfile import written
 from simmpp.config.advice import AdviseSettings
 from simmpp.config.config import Config
+from simmpp.report.advice.page import write_advice_page
 from simmpp.studies.advise.advise import Advice
 from simmpp.studies.advise.answer import sentences, settings_of
 from simmpp.studies.advise.candidates import setups_of, sizes_of
@@ -66,7 +67,7 @@ def print_advice(advice: Advice) -> None:
 def write_advice(advice: Advice, out: Path) -> None:
     """The table and the page."""
     write_csv(rows_of(advice), COLUMNS, out / FILE)
-    wrote(out / FILE)
+    wrote(out / FILE, write_advice_page(advice, advice.places, out))
 
 
 def list_candidates(config: Config) -> None:

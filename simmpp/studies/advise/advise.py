@@ -19,10 +19,19 @@ from simmpp.run.inputs import cache_workload, workload_of
 from simmpp.run.point import refuse_models
 from simmpp.studies.advise.bounds import bound_of
 from simmpp.studies.advise.candidates import Candidate, candidates_of, capacity_of, sizes_of
+from simmpp.studies.advise.constants import constants_of
 from simmpp.studies.advise.least import least_nodes
+from simmpp.studies.advise.memory_map import Place, memory_map
 from simmpp.studies.advise.racing import Ask, Contender, Race
 from simmpp.studies.advise.running import OutOfTime, Run, Runner, Watcher
-from simmpp.studies.advise.sensitivity import Sensitivity, Study, rivals_of
+from simmpp.studies.advise.sensitivity import (
+    Remeasure,
+    Sensitivity,
+    Study,
+    Values,
+    machines_drawn,
+    rivals_of,
+)
 from simmpp.studies.advise.verdict import Contest, Verdict
 from simmpp.sweeps.executors import pool_for
 from simmpp.sweeps.intervals import MeanInterval, of_logarithms
@@ -36,6 +45,8 @@ class Advice:
     """What is advised, and all that it was found from."""
 
     config: Config
+    scene: str
+    """How the workload is called."""
     candidates: list[Candidate]
     """Also those that do not fit."""
     bounds: list[int]
@@ -53,6 +64,8 @@ class Advice:
     """Ctrl-C, if it was that."""
     least_nodes: Candidate | None = None
     """Where nothing fits, what would with more nodes."""
+    places: list[Place] = field(default_factory=list)
+    """The map of memory and nodes, if it was asked for."""
 
     @property
     def asked(self) -> AdviseSettings:
@@ -115,13 +128,15 @@ def advise(
     workers: int = 1,
     cluster: str | None = None,
     seconds: float | None = None,
+    maps: bool = False,
     watcher: Watcher | None = None,
 ) -> Advice:
     """Say which policy on how many nodes: the question is a configuration's key ``advise``.
 
     Candidates are simulated in this process, in ``workers`` processes or on the Dask ``cluster`` of
     that address; what comes out is the same. After ``seconds``, if given, or Ctrl-C while it
-    simulates, the advice is what was best until then, with less confidence or none.
+    simulates, the advice is what was best until then, with less confidence or none. With ``maps``
+    it is also found what would win with less and with more memory.
     Raises InputError if the configuration is wrong.
     """
     require_kind("config", config, Mapping, Config, str, Path)
@@ -140,7 +155,7 @@ def advise(
     if not advice.fitting:
         return advice
     with closing(pool_for(workers, cluster, run_task)) as pool:
-        _find(advice, Run(pool, deadline_s, watcher))
+        _find(advice, Run(pool, deadline_s, watcher), maps=maps)
     return advice
 
 
@@ -155,13 +170,13 @@ def asked_of(config: Config, watcher: Watcher) -> Advice:
     fitting = [candidate for candidate in candidates if candidate.fits]
     bounds = [bound_of(candidate, workload) for candidate in fitting]
     contest = contest_of(config, fitting, bounds, Run.never())
-    advice = Advice(config, candidates, bounds, contest, contest.verdict())
+    advice = Advice(config, workload.name, candidates, bounds, contest, contest.verdict())
     if not fitting:
         advice.least_nodes = least_nodes(config, workload, max(sizes_of(config)))
     return advice
 
 
-def _find(advice: Advice, run: Run) -> None:
+def _find(advice: Advice, run: Run, *, maps: bool) -> None:
     """Race, and see what the winner hangs on; whatever ends it, what is known is kept."""
     contest = contest_of(advice.config, advice.fitting, advice.bounds, run)
     advice.contest, study = contest, None
@@ -171,7 +186,11 @@ def _find(advice: Advice, run: Run) -> None:
         advice.verdict = contest.verdict()
         study = study_of(advice, run)
         if study is not None:
-            study.work()
+            constants = constants_of(advice.config)
+            study.draw(machines_drawn(constants))
+            study.vary(constants)
+        if maps:
+            _map(advice, run)
     except OutOfTime:
         advice.broken_off = "the time was over"
     except KeyboardInterrupt as interrupt:
@@ -179,21 +198,43 @@ def _find(advice: Advice, run: Run) -> None:
     if study is None:
         advice.runs, advice.verdict = run.count, contest.verdict()
     else:
-        advice.further_runs, advice.sensitivity = run.count - advice.runs, study.result()
+        advice.sensitivity = study.result()
+        advice.further_runs = run.count - advice.runs
+
+
+def _map(advice: Advice, run: Run) -> None:
+    """What would win with other memory."""
+    race, ranking = advice.contest.race, dict[int, list[str]]()
+    for n in sorted(race.costs, key=lambda n: (race.mean(n), advice.fitting[n].order)):
+        candidate = advice.fitting[n]
+        ranking.setdefault(candidate.processors, []).append(candidate.setup.name)
+    workload = workload_of(advice.config)
+    for place in memory_map(advice.config, workload, ranking, run):
+        advice.places.append(place)
 
 
 def study_of(advice: Advice, run: Runner) -> Study | None:
     """What is to be done about the constants; None if nothing is advised."""
-    chosen, asked = advice.chosen, advice.asked
+    chosen, asked = advice.verdict.chosen, advice.asked
     if chosen is None:
         return None
-    is_limited = isinstance(asked.goal, int)
-    others = [] if is_limited else [advice.fitting[n] for n in advice.others()]
-    return Study(
-        chosen,
-        rivals_of(chosen, others),
-        run,
-        lambda candidate: weight_of(asked, candidate),
-        float(asked.indifference),
-        advice.contest.limit,
-    )
+    others = [] if isinstance(asked.goal, int) else advice.others()
+    rivals = rivals_of(chosen, others, [candidate.kind for candidate in advice.fitting])
+    indifference, limit = float(asked.indifference), advice.contest.limit
+    return Study(chosen, rivals, _remeasured(advice, run), indifference, limit)
+
+
+def _remeasured(advice: Advice, run: Runner) -> Remeasure:
+    """Simulates candidates on changed machines; what can't be there has no end."""
+
+    def measure(machines: Sequence[Values], numbers: Sequence[int]) -> list[list[float]]:
+        asked = [
+            (advice.fitting[n].changed_task(machine), weight_of(advice.asked, advice.fitting[n]))
+            for machine in machines
+            for n in numbers
+        ]
+        makespans = iter(run([task for task, _ in asked if task is not None]))
+        costs = [inf if task is None else next(makespans) * weight for task, weight in asked]
+        return [costs[at : at + len(numbers)] for at in range(0, len(costs), len(numbers))]
+
+    return measure

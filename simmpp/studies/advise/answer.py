@@ -91,7 +91,8 @@ def _sure(advice: Advice) -> Iterator[str]:
         measure = "cheaper" if asked.goal == NODE_SECONDS else "faster"
         claim = f"no other of {of} is more than {float(asked.indifference):.0%} {measure}"
     if advice.verdict.is_within or not isinstance(asked.goal, int):
-        yield f"{words.capital(_share(verdict.sure))} sure that {claim}, by the chance of placements."
+        sure = words.capital(_share(verdict.sure))
+        yield f"{sure} sure that {claim}, by the chance of placements."
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
@@ -180,7 +181,9 @@ def _hangs_on(advice: Advice) -> Iterator[str]:
 def _turns(advice: Advice, swing: Swing) -> Iterator[str]:
     for side, at, rival in zip(("below", "above"), swing.turns_at, swing.rivals, strict=True):
         if at is not None:
-            then = f"would change to {named(rival, short=True)}" if rival else "takes too long"
+            then = "takes too long"
+            if rival is not None:
+                then = f"would change to {named(advice.fitting[rival], short=True)}"
             yield f"{swing.constant.name} ({then} {side} {_rounded(swing, at)})"
 
 

@@ -19,6 +19,7 @@ from simmpp.placement.place import place
 from simmpp.placement.placement import Memory
 from simmpp.placement.rooms import Capacity
 from simmpp.policy.parameters import PolicyParameters
+from simmpp.studies.advise.constants import Constant, with_constants
 from simmpp.studies.advise.setups import BY_NAME, MOST_CANDIDATES, SETUPS, Setup, rank
 from simmpp.sweeps.grid import Comparison, GridPoint
 from simmpp.sweeps.task import Task, task_of
@@ -73,6 +74,21 @@ class Candidate:
     def task(self, seed: int) -> Task:
         """Its simulation with the draws of a seed."""
         return task_of(_point(self.config, seed), self.digest)
+
+    def changed_task(self, values: Mapping[Constant, int]) -> Task | None:
+        """Its simulation on a machine with other constants, with the first seed.
+
+        None where there is no such machine.
+        """
+        try:
+            return task_of(_point(with_constants(self.config, values), 0), self.digest)
+        except ConfigError:
+            return None
+
+    @property
+    def kind(self) -> tuple[str, int]:
+        """Candidates of one kind behave alike."""
+        return self.policy.name, self.processors
 
     @cached_property
     def is_drawn(self) -> bool:

@@ -10,17 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from simmpp.common.errors import ConfigError
-from simmpp.studies.advise.candidates import Candidate
-from simmpp.studies.advise.constants import (
-    Constant,
-    constants_of,
-    drawn,
-    log_ratio,
-    with_constants,
-)
-from simmpp.studies.advise.running import Runner
-from simmpp.sweeps.task import Task
+from simmpp.studies.advise.constants import Constant, drawn, log_ratio
 
 RIVALS = 4
 """Others that are tried with each draw: the best with another policy or number of nodes. ESTIMATE:
@@ -29,6 +19,14 @@ RIVALS_AT_ENDS = 2
 """Of these, those that are tried at both ends of each range."""
 DRAWS = 16
 """Machines drawn from the ranges."""
+STREAM = "advise constants"
+
+Values = dict[Constant, int]
+"""Constants that are not as the machine has them."""
+Remeasure = Callable[[Sequence[Values], Sequence[int]], list[list[float]]]
+"""The cost of each of some contenders on each of some machines."""
+Kind = tuple[str, int]
+"""A contender's policy and number of nodes."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +36,8 @@ class Swing:
     constant: Constant
     advantages: tuple[float, float]
     """Log of the best rival's cost / its own, with the constant at its least and its greatest."""
-    rivals: tuple[Candidate | None, Candidate | None]
-    """Who that is; None: the limit of the goal."""
+    rivals: tuple[int | None, int | None]
+    """Which contender that is; None: the limit of the goal."""
     turns_at: tuple[int | None, int | None]
     """Value below, and above, which the advice would be another; None: it would not."""
 
@@ -67,10 +65,9 @@ class Sensitivity:
 class Study:
     """Finds it; what it has so far may be asked for whenever it is broken off."""
 
-    chosen: Candidate
-    rivals: list[Candidate]
-    run: Runner
-    weight: Callable[[Candidate], int]
+    chosen: int
+    rivals: Sequence[int]
+    measure: Remeasure
     indifference: float
     limit: float = math.inf
     """With a goal of least nodes, what is kept or not; there are no rivals then."""
@@ -78,18 +75,22 @@ class Study:
     _drawn: list[bool] = field(default_factory=list)
     _advantage: float = math.nan
 
-    def work(self) -> None:
-        """Simulate all of it."""
+    def draw(self, machines: Sequence[Values]) -> None:
+        """On how many machines it stays the best."""
         self._advantage = self._compare([{}], self.rivals)[0][0]
-        constants = constants_of(self.chosen.config)
-        machines = drawn(constants, DRAWS, "advise constants")
         for advantage, _ in self._compare(machines, self.rivals):
-            self._drawn.append(advantage >= -math.log(1 + self.indifference))
-        few = self.rivals[:RIVALS_AT_ENDS]
+            self._drawn.append(advantage >= self._lost)
+
+    def vary(self, constants: Sequence[Constant]) -> None:
+        """Where each constant alone would change the advice."""
         ends = [{constant: end} for constant in constants for end in (constant.low, constant.high)]
-        found = self._compare(ends, few)
+        found = self._compare(ends, self.rivals[:RIVALS_AT_ENDS])
         for constant, low, high in zip(constants, found[::2], found[1::2], strict=True):
-            self._swings.append(self._swing(constant, low, high))
+            turns_at = (
+                self._turn(constant, constant.low, low[0]),
+                self._turn(constant, constant.high, high[0]),
+            )
+            self._swings.append(Swing(constant, (low[0], high[0]), (low[1], high[1]), turns_at))
 
     def result(self) -> Sensitivity:
         """As far as it is known."""
@@ -98,69 +99,44 @@ class Study:
         swings = sorted(self._swings, key=lambda swing: (-swing.width, swing.constant.name))
         return Sensitivity(self._advantage, swings, kept, n)
 
-    def _swing(
-        self,
-        constant: Constant,
-        low: tuple[float, Candidate | None],
-        high: tuple[float, Candidate | None],
-    ) -> Swing:
-        ends = (constant.low, constant.high)
-        turns = [
-            self._turn(constant, end, at[0]) for end, at in zip(ends, (low, high), strict=True)
-        ]
-        return Swing(constant, (low[0], high[0]), (low[1], high[1]), (turns[0], turns[1]))
+    @property
+    def _lost(self) -> float:
+        """An advantage below which another is better."""
+        return -math.log(1 + self.indifference)
 
     def _turn(self, constant: Constant, end: int, advantage: float) -> int | None:
         """Where the advantage is lost between the value and an end, on a line between both."""
-        lost = -math.log(1 + self.indifference)
-        if advantage >= lost or end == constant.value:
+        if advantage >= self._lost or end == constant.value:
             return None
-        if math.isinf(advantage) or self._advantage <= lost:
+        if math.isinf(advantage) or self._advantage <= self._lost:
             return constant.value
-        share = (self._advantage - lost) / (self._advantage - advantage)
+        share = (self._advantage - self._lost) / (self._advantage - advantage)
         return replace(constant, low=constant.value, high=end).at(share)
 
     def _compare(
-        self, machines: list[dict[Constant, int]], rivals: list[Candidate]
-    ) -> list[tuple[float, Candidate | None]]:
+        self, machines: Sequence[Values], rivals: Sequence[int]
+    ) -> list[tuple[float, int | None]]:
         """On each machine the log of the best rival's cost / the chosen one's, and who that is."""
-        everyone = [self.chosen, *rivals]
-        tasks = [self._task(each, machine) for machine in machines for each in everyone]
-        runnable = [task for task in tasks if task is not None]
-        costs = iter(self.run(runnable))
-        found: list[tuple[float, Candidate | None]] = []
-        at = iter(tasks)
-        for _ in machines:
-            own, *others = (
-                math.inf if task is None else next(costs) * self.weight(each)
-                for each, task in zip(everyone, (next(at) for _ in everyone), strict=True)
-            )
-            best, rival = min(
-                zip(others, rivals, strict=True),
-                key=lambda pair: pair[0],
-                default=(self.limit, None),
-            )
+        found: list[tuple[float, int | None]] = []
+        for own, *others in self.measure(machines, [self.chosen, *rivals]):
+            best, rival = self.limit, None
+            for cost, number in zip(others, rivals, strict=True):
+                if rival is None or cost < best:
+                    best, rival = cost, number
             found.append((log_ratio(best, own), rival))
         return found
 
-    def _task(self, candidate: Candidate, values: dict[Constant, int]) -> Task | None:
-        """Its simulation on a changed machine; None where that machine can't be."""
-        try:
-            config = with_constants(candidate.config, values)
-            return replace(candidate, config=config).task(0)
-        except ConfigError:
-            return None
 
-
-def rivals_of(chosen: Candidate, others: Sequence[Candidate]) -> list[Candidate]:
-    """Of candidates, the best first, those that may behave otherwise than the chosen one."""
-    kinds, found = {_kind(chosen)}, list[Candidate]()
+def rivals_of(chosen: int, others: Sequence[int], kinds: Sequence[Kind]) -> list[int]:
+    """Of others, the best first, those that may behave otherwise than the chosen one."""
+    seen, found = {kinds[chosen]}, list[int]()
     for other in others:
-        if _kind(other) not in kinds and len(found) < RIVALS:
-            kinds.add(_kind(other))
+        if kinds[other] not in seen and len(found) < RIVALS:
+            seen.add(kinds[other])
             found.append(other)
     return found
 
 
-def _kind(candidate: Candidate) -> tuple[str, int]:
-    return candidate.policy.name, candidate.processors
+def machines_drawn(constants: Sequence[Constant]) -> list[Values]:
+    """Those on which an advice is tried."""
+    return drawn(constants, DRAWS, STREAM)
