@@ -29,29 +29,46 @@ class Setup:
     residents are as the configuration, or ``keys``, say."""
 
 
-def _setup(name: str, policy: str | Mapping[str, Any], room: Fraction, **placed: Any) -> Setup:
-    where = {
-        "owners": "placement.owners",
-        "pixels": "placement.pixels",
-        "islands": "placement.islands",
-        "residents": "memory.residents",
-    }
-    keys = {"memory.residents": "used"} | {where[key]: value for key, value in placed.items()}
-    return Setup(name, {"policy": policy, **keys}, room)
+def _setup(
+    name: str, room: Fraction | None, policy: object, pixels: object, **more: object
+) -> Setup:
+    keys = {"policy": policy, "placement.pixels": pixels, "memory.residents": "used"}
+    given = {key.replace("__", "."): value for key, value in more.items()}
+    return Setup(name, keys | given, room)
 
 
-_NOTHING, _QUARTER, _HALF, _MOST = (Fraction(n, 4) for n in range(4))
-_ASKS_SOON = {"ask_at_least": 8}
-_SMALL = {"batch": 64}
+_QUARTER, _HALF, _MOST = (Fraction(n, 4) for n in (1, 2, 3))
+_SQUARES = {"cells": 4}
+_BY_USE = {"placement__owners": "used"}
+_ANYWHERE = {"memory__residents": "random"}
+_OBJECT = {"name": "object", "packing": "requests"}
 
 SETUPS: tuple[Setup, ...] = (
-    Setup("replicated", {"policy": "replicated"}, None),
-    _setup("object", {"name": "object", "packing": "requests"}, _HALF),
-    _setup("ray", "ray", _HALF),
-    _setup("concurrent", "concurrent", _HALF),
-    _setup("holders", "holders", _HALF),
-    _setup("cost", "cost", _HALF),
+    Setup("replicated", {"policy": "replicated", "placement.pixels": "interleaved"}, None),
+    _setup("object", _HALF, _OBJECT, "interleaved"),
+    _setup("ray", _HALF, "ray", "interleaved"),
+    _setup("concurrent", _MOST, "concurrent", _SQUARES),
+    _setup("object-near", _MOST, _OBJECT, _SQUARES, **_BY_USE),
+    _setup("ray-islands", _HALF, "ray", "rows", placement__islands=4),
+    _setup("holders-near", _MOST, "holders", _SQUARES, **_BY_USE),
+    _setup("cost-near", _MOST, "cost", _SQUARES, **_BY_USE),
+    _setup("object-blocks", _MOST, _OBJECT, "blocks", **_BY_USE),
+    _setup("ray-blocks", _MOST, "ray", "blocks"),
+    _setup("object-near-copies", _QUARTER, _OBJECT, _SQUARES, **_BY_USE),
+    _setup("ray-halves", _HALF, "ray", "rows", placement__islands=2),
+    _setup("object-blocks-hot", _MOST, _OBJECT, "blocks", memory__residents="hot"),
+    _setup("object-squares", _MOST, _OBJECT, _SQUARES),
+    _setup("concurrent-near-copies", _QUARTER, "concurrent", _SQUARES, **_BY_USE),
+    _setup("holders-islands", _MOST, "holders", _SQUARES, placement__islands=4),
+    _setup("cost-islands", _HALF, "cost", "rows", placement__islands=4),
+    _setup("holders-halves", _HALF, "holders", "rows", placement__islands=2),
+    _setup("ray-random", _HALF, "ray", "interleaved", **_ANYWHERE),
+    _setup("concurrent-random", _HALF, "concurrent", "rows", **_ANYWHERE),
 )
+"""Found on four scenes and two machines, 280 tried: of these 20 one is mostly within a hundredth of
+the best. Names say how it is placed: near, pixels in squares and objects owned where they are used;
+copies, most room is for what is fetched; islands and halves, the scene lies in four or two parts
+of the machine each; random, residents are drawn."""
 BY_NAME = {setup.name: setup for setup in SETUPS}
 
 
