@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -23,7 +23,7 @@ from simmpp.studies.advise.constants import constants_of
 from simmpp.studies.advise.least import least_nodes
 from simmpp.studies.advise.memory_map import Place, memory_map
 from simmpp.studies.advise.racing import Ask, Contender, Race
-from simmpp.studies.advise.running import OutOfTime, Run, Runner, Watcher
+from simmpp.studies.advise.running import OutOfTime, Run, Watcher
 from simmpp.studies.advise.sensitivity import (
     Remeasure,
     Sensitivity,
@@ -103,15 +103,17 @@ def weight_of(asked: AdviseSettings, candidate: Candidate) -> int:
     return candidate.processors if asked.goal == NODE_SECONDS else 1
 
 
-def contest_of(config: Config, fitting: list[Candidate], bounds: list[int], run: Runner) -> Contest:
+def contest_of(config: Config, fitting: list[Candidate], bounds: list[int], run: Run) -> Contest:
     """The race of candidates for the goal of the question."""
     asked = config.settings.advise or AdviseSettings()
     weights = [weight_of(asked, candidate) for candidate in fitting]
 
-    def measure(asks: Sequence[Ask]) -> dict[Ask, float]:
-        makespans = run([fitting[n].task(seed) for n, seed in asks])
-        found = zip(asks, makespans, strict=True)
-        return {(n, seed): makespan * weights[n] for (n, seed), makespan in found}
+    def measure(asks: Sequence[Ask]) -> Iterator[tuple[Ask, float]]:
+        tasks = {(n, seed): fitting[n].task(seed) for n, seed in asks}
+        by_key = {task.key: ask for ask, task in tasks.items()}
+        for task, makespan in run.one_by_one(list(tasks.values())):
+            n, seed = by_key[task.key]
+            yield (n, seed), makespan * weights[n]
 
     contenders = [
         Contender(float(bound * weight), candidate.is_drawn)
@@ -213,7 +215,7 @@ def _map(advice: Advice, run: Run) -> None:
         advice.places.append(place)
 
 
-def study_of(advice: Advice, run: Runner) -> Study | None:
+def study_of(advice: Advice, run: Run) -> Study | None:
     """What is to be done about the constants; None if nothing is advised."""
     chosen, asked = advice.verdict.chosen, advice.asked
     if chosen is None:
@@ -224,7 +226,7 @@ def study_of(advice: Advice, run: Runner) -> Study | None:
     return Study(chosen, rivals, _remeasured(advice, run), indifference, limit)
 
 
-def _remeasured(advice: Advice, run: Runner) -> Remeasure:
+def _remeasured(advice: Advice, run: Run) -> Remeasure:
     """Simulates candidates on changed machines; what can't be there has no end."""
 
     def measure(machines: Sequence[Values], numbers: Sequence[int]) -> list[list[float]]:

@@ -16,6 +16,7 @@ from simmpp.common.randomness import key
 from simmpp.common.units import UNLIMITED
 from simmpp.config.config import Config, changed
 from simmpp.config.keys import NAME, Key, keys
+from simmpp.machine.layers import BELONGS
 from simmpp.machine.machine import NIC, THREAD
 
 _IDLE = {"handoff": THREAD, "get_startup": NIC, "completion": NIC}
@@ -65,8 +66,7 @@ def constants_of(config: Config) -> list[Constant]:
     layers = config.layers
     alike: dict[tuple[str, int, int, int], list[str]] = {}
     for name, known in layers.known.items():
-        idle = _IDLE.get(name, layers.words["service"]) != layers.words["service"]
-        if not (known.is_exact or idle or name in _NO_TIME):
+        if not (known.is_exact or name in _NO_TIME or _is_idle(name, layers.words)):
             place = (_family(name), known.value, known.low, known.high)
             alike.setdefault(place, []).append(name)
     found = []
@@ -75,6 +75,13 @@ def constants_of(config: Config) -> list[Constant]:
         name = family if families.count(family) == 1 else names[0]
         found.append(Constant(name, tuple(names), value, low, high))
     return found
+
+
+def _is_idle(name: str, words: Mapping[str, str]) -> bool:
+    """Nothing is spent on it with the machine's service and topology."""
+    topologies = BELONGS.get(name.partition(".")[0], (words["topology"],))
+    services = (_IDLE.get(name, words["service"]),)
+    return words["topology"] not in topologies or words["service"] not in services
 
 
 def _family(name: str) -> str:

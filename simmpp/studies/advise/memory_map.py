@@ -10,7 +10,7 @@ from typing import NamedTuple
 from simmpp.common.units import write_bytes
 from simmpp.config.config import Config, changed
 from simmpp.studies.advise.candidates import Candidate, candidates_on, capacity_of, sizes_of
-from simmpp.studies.advise.running import Runner
+from simmpp.studies.advise.running import Run
 from simmpp.workload.workload import Workload
 
 LEVELS = tuple(Fraction(2) ** n for n in (-2, -1, 0, 1, 2))
@@ -30,7 +30,7 @@ class Place(NamedTuple):
 
 
 def memory_map(
-    config: Config, workload: Workload, ranking: dict[int, list[str]], run: Runner
+    config: Config, workload: Workload, ranking: dict[int, list[str]], run: Run
 ) -> Iterator[Place]:
     """The best of the most promising setups at each place.
 
@@ -45,7 +45,7 @@ def memory_map(
 
 
 def _place(
-    config: Config, workload: Workload, nodes: int, size: int, ranking: list[str], run: Runner
+    config: Config, workload: Workload, nodes: int, size: int, ranking: list[str], run: Run
 ) -> Place:
     fitting = [each for each in candidates_on(config, workload, nodes) if each.fits]
     ranks = {name: n for n, name in enumerate(ranking)}

@@ -13,7 +13,7 @@ Jamieson and Talwalkar 2016.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
@@ -35,8 +35,8 @@ BATCH = 8
 
 Ask = tuple[int, int]
 """A contender's number and a seed."""
-Measure = Callable[[Sequence[Ask]], dict[Ask, float]]
-"""Runs and says what each took, infinity if it came to no end."""
+Measure = Callable[[Sequence[Ask]], Iterable[tuple[Ask, float]]]
+"""Runs and says what each took as soon as it is known, infinity if it came to no end."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Race:
         drawn = [(n, seed) for n, seed in asks if seed == 0 or self.contenders[n].is_drawn]
         new = [(n, seed) for n, seed in drawn if seed not in self.costs.get(n, ())]
         if new:
-            for (n, seed), cost in self.measure(new).items():
+            for (n, seed), cost in self.measure(new):
                 self.costs.setdefault(n, {})[seed] = cost
 
     def _leave(self, seeds: int, most: int) -> None:

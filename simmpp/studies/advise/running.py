@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Iterator, Sequence
 
 from simmpp.common.errors import ConfigError
 from simmpp.sweeps.executors import Pool, pool_for
@@ -35,13 +34,6 @@ class Watcher:
         """Something that the user should know."""
 
 
-class Runner(Protocol):
-    """Simulates: the real one, or a table of what was simulated before."""
-
-    def __call__(self, tasks: Sequence[Task]) -> list[float]:
-        """The makespan of each in ps; infinity for what came to no end or did not fit."""
-
-
 class Run:
     """Simulates tasks on a pool, each once, and counts them."""
 
@@ -64,14 +56,22 @@ class Run:
 
         Raises OutOfTime when the time is over, ConfigError for a simulation that failed.
         """
-        new = {task.key: task for task in tasks if task.key not in self._makespans}
+        found = {task.key: makespan for task, makespan in self.one_by_one(tasks)}
+        return [found[task.key] for task in tasks]
+
+    def one_by_one(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, float]]:
+        """Each task with its makespan as soon as it is known; raises the same."""
+        by_key = {task.key: task for task in tasks}
+        known = {key: self._makespans[key] for key in by_key if key in self._makespans}
+        yield from ((by_key[key], makespan) for key, makespan in known.items())
+        new = {key: task for key, task in by_key.items() if key not in known}
         for outcome in outcomes(deque(new.values()), self._pool):
             if outcome.error:
                 raise ConfigError(f"a simulation failed: {outcome.error}")
             found = outcome.numbers.get("makespan_ps")
             makespan = math.inf if found is None else float(max(LEAST_PS, found))
             self._makespans[outcome.key] = makespan
+            yield by_key[outcome.key], makespan
             self._watcher.simulated(self.count)
             if time.monotonic() > self._deadline_s:
                 raise OutOfTime
-        return [self._makespans[task.key] for task in tasks]

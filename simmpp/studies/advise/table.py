@@ -25,7 +25,7 @@ COLUMNS = (
     "as_good",
     "regret",
 )
-"""``fate``: in the end, left, not run (its bound was above what others take), untried (broken off),
+"""``fate``: in the end, left, not run (by its bound, or as fewer nodes do), untried (broken off),
 no end, does not fit. ``as_good``: how likely it is as good as the best; ``regret``: by what share
 it takes more than the best, in the mean."""
 
@@ -74,4 +74,4 @@ def fate(advice: Advice, number: int) -> str:
     if number in race.costs:
         ended = race.mean(number) < float("inf")
         return ("in the end" if number in race.in_race else "left") if ended else "no end"
-    return "not run" if number in race.dropped else "untried"
+    return "not run" if number in race.dropped or race.is_over else "untried"

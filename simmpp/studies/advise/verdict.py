@@ -64,7 +64,7 @@ class Contest:
     def verdict(self) -> Verdict:
         """As it stands."""
         race = self.race
-        ended = [n for n in (race.in_race or self._lost) if math.isfinite(race.mean(n))]
+        ended = [n for n in self._left() if math.isfinite(race.mean(n))]
         if not ended:
             return Verdict(None, [], False, None)
         best = min(map(race.mean, ended))
@@ -84,6 +84,16 @@ class Contest:
         if math.isfinite(self.limit):
             sure = self._sure_of_limit(means[known.index(chosen)])
         return Verdict(chosen, ties, is_within, sure, likely, regret)
+
+    def _left(self) -> list[int]:
+        """Those of whom one is advised: who is left, or, when broken off, all that were run."""
+        if self.race.is_over:
+            return self.race.in_race or self._lost
+        within = [n for n in self.race.costs if self.race.mean(n) <= self.limit]
+        if math.isfinite(self.limit) and within:
+            least = min(self.orders[n][0] for n in within)
+            return [n for n in within if self.orders[n][0] == least]
+        return list(self.race.costs)
 
     def _simplest(self, ended: list[int], best: float) -> int:
         """Of those that are equally good, or keep the limit as well as the best."""
