@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from simmpp.placement.placement import Cells, Memory, PlacementRules
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.run.profit import profits
-    from simmpp.studies.advise.advise import Advice, advise
+    from simmpp.studies.advise.advice import Advice
+    from simmpp.studies.advise.advise import advise
     from simmpp.studies.curve.estimate import estimate
     from simmpp.sweeps.sweep import SweepResult
     from simmpp.sweeps.sweep import run_sweep as sweep
@@ -54,7 +55,7 @@ else:  # type checkers would take any name to be there
 
 
 _HOME = {
-    "Advice": "simmpp.studies.advise.advise:Advice",
+    "Advice": "simmpp.studies.advise.advice:Advice",
     "Cells": "simmpp.placement.placement:Cells",
     "Memory": "simmpp.placement.placement:Memory",
     "Picture": "simmpp.workload.picture:Picture",

@@ -15,11 +15,10 @@ from simmpp.common.yamlfile import written
 from simmpp.config.advice import AdviseSettings
 from simmpp.config.config import Config
 from simmpp.report.advice.page import write_advice_page
-from simmpp.studies.advise.advise import Advice
-from simmpp.studies.advise.answer import sentences, settings_of
+from simmpp.studies.advise.advice import Advice
 from simmpp.studies.advise.candidates import setups_of, sizes_of
 from simmpp.studies.advise.running import Watcher
-from simmpp.studies.advise.table import COLUMNS, FILE, rows_of
+from simmpp.studies.advise.table import COLUMNS, FILE
 
 
 class _Bars(Watcher):
@@ -56,17 +55,16 @@ def advice_bar() -> Iterator[Watcher]:
 
 def print_advice(advice: Advice) -> None:
     """The sentences, and the settings to run."""
-    for sentence in sentences(advice):
+    for sentence in advice.sentences:
         say(sentence)
-    settings = settings_of(advice)
-    if settings:
+    if advice.settings:
         say("\nTo run it, over the configuration:\n")
-        say("".join(f"    {line}\n" for line in settings.splitlines()))
+        say("".join(f"    {line}\n" for line in advice.settings.splitlines()))
 
 
 def write_advice(advice: Advice, out: Path) -> None:
     """The table and the page."""
-    write_csv(rows_of(advice), COLUMNS, out / FILE)
+    write_csv(advice.rows, COLUMNS, out / FILE)
     wrote(out / FILE, write_advice_page(advice, advice.places, out))
 
 

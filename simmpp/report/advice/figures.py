@@ -19,7 +19,7 @@ from simmpp.plot.curves import (
 )
 from simmpp.report.page.figures.figure import Figure
 from simmpp.run import words
-from simmpp.studies.advise.advise import Advice
+from simmpp.studies.advise.advice import Advice
 from simmpp.studies.advise.answer import named
 from simmpp.studies.advise.memory_map import Place
 from simmpp.studies.advise.sensitivity import Swing

@@ -9,10 +9,9 @@ from simmpp.common.units import format_bytes, format_ps
 from simmpp.report.advice.figures import advice_figures
 from simmpp.report.page.figures.figure import figure_data
 from simmpp.report.page.template import rendered
-from simmpp.studies.advise.advise import Advice
-from simmpp.studies.advise.answer import capacity, sentences, settings_of
+from simmpp.studies.advise.advice import Advice
+from simmpp.studies.advise.answer import capacity
 from simmpp.studies.advise.memory_map import Place
-from simmpp.studies.advise.table import rows_of
 
 PAGE = "advise.html"
 
@@ -34,10 +33,10 @@ def write_advice_page(advice: Advice, places: list[Place], folder: Path) -> Path
             *((figure.stem, figure.title) for _, figure in figures),
             ("candidates", "All candidates"),
         ],
-        "sentences": sentences(advice),
-        "settings": settings_of(advice),
+        "sentences": advice.sentences,
+        "settings": advice.settings,
         "figures": figures,
-        "candidates": [_line(row) for row in rows_of(advice)],
+        "candidates": [_line(row) for row in advice.rows],
         "made": "Made by simmpp advise; nothing is loaded from anywhere.",
         "data": {"figures": {figure.stem: figure_data(figure) for _, figure in figures}},
     }

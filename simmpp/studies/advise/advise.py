@@ -5,9 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
-from functools import cached_property
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
 from types import NoneType
 
@@ -17,90 +15,26 @@ from simmpp.config.advice import AdviseSettings
 from simmpp.config.config import Config, config_from_mapping, load_config
 from simmpp.run.inputs import cache_workload, workload_of
 from simmpp.run.point import refuse_models
+from simmpp.studies.advise.advice import Advice, weight_of
+from simmpp.studies.advise.answer import sentences_of, settings_of
 from simmpp.studies.advise.bounds import bound_of
 from simmpp.studies.advise.candidates import Candidate, candidates_of, capacity_of, sizes_of
 from simmpp.studies.advise.constants import constants_of
 from simmpp.studies.advise.least import least_nodes
-from simmpp.studies.advise.memory_map import Place, memory_map
+from simmpp.studies.advise.memory_map import memory_map
 from simmpp.studies.advise.racing import Ask, Contender, Race
 from simmpp.studies.advise.running import OutOfTime, Run, Watcher
 from simmpp.studies.advise.sensitivity import (
     Remeasure,
-    Sensitivity,
     Study,
     Values,
     machines_drawn,
     rivals_of,
 )
-from simmpp.studies.advise.verdict import Contest, Verdict
+from simmpp.studies.advise.table import rows_of
+from simmpp.studies.advise.verdict import Contest
 from simmpp.sweeps.executors import pool_for
-from simmpp.sweeps.intervals import MeanInterval, of_logarithms
 from simmpp.sweeps.worker import keep_workload, run_task
-
-NODE_SECONDS = "node-seconds"
-
-
-@dataclass(eq=False)
-class Advice:
-    """What is advised, and all that it was found from."""
-
-    config: Config
-    scene: str
-    """How the workload is called."""
-    candidates: list[Candidate]
-    """Also those that do not fit."""
-    bounds: list[int]
-    """Of those that fit, in ps."""
-    contest: Contest
-    verdict: Verdict
-    sensitivity: Sensitivity = field(default_factory=Sensitivity)
-    runs: int = 0
-    """Simulations of the race."""
-    further_runs: int = 0
-    """Simulations with other constants."""
-    broken_off: str = ""
-    """What ended it before it was done, if anything did."""
-    interrupt: KeyboardInterrupt | None = None
-    """Ctrl-C, if it was that."""
-    least_nodes: Candidate | None = None
-    """Where nothing fits, what would with more nodes."""
-    places: list[Place] = field(default_factory=list)
-    """The map of memory and nodes, if it was asked for."""
-
-    @property
-    def asked(self) -> AdviseSettings:
-        """The question."""
-        return self.config.settings.advise or AdviseSettings()
-
-    @cached_property
-    def fitting(self) -> list[Candidate]:
-        """Candidates that fit, by their numbers in the race."""
-        return [candidate for candidate in self.candidates if candidate.fits]
-
-    @property
-    def chosen(self) -> Candidate | None:
-        """What is advised, if anything is."""
-        number = self.verdict.chosen
-        return None if number is None else self.fitting[number]
-
-    def makespan_ps(self, number: int) -> MeanInterval:
-        """Mean and 95 % interval of one that was run."""
-        costs, weight = self.contest.race.costs[number], weight_of(self.asked, self.fitting[number])
-        makespans = [cost / weight for cost in costs.values()]
-        if not self.fitting[number].is_drawn:
-            return MeanInterval(*(makespans[0],) * 3)
-        return of_logarithms(makespans)
-
-    def others(self) -> list[int]:
-        """All that came to an end but the one that is advised, the best first."""
-        race = self.contest.race
-        ended = [n for n in race.costs if n != self.verdict.chosen and isfinite(race.mean(n))]
-        return sorted(ended, key=lambda n: (race.mean(n), self.fitting[n].order))
-
-
-def weight_of(asked: AdviseSettings, candidate: Candidate) -> int:
-    """What a makespan is multiplied by for the goal."""
-    return candidate.processors if asked.goal == NODE_SECONDS else 1
 
 
 def contest_of(config: Config, fitting: list[Candidate], bounds: list[int], run: Run) -> Contest:
@@ -154,10 +88,11 @@ def advise(
     deadline_s = inf if seconds is None else time.monotonic() + seconds
     watcher = watcher or Watcher()
     advice = asked_of(config, watcher)
-    if not advice.fitting:
-        return advice
-    with closing(pool_for(workers, cluster, run_task)) as pool:
-        _find(advice, Run(pool, deadline_s, watcher), maps=maps)
+    if advice.fitting:
+        with closing(pool_for(workers, cluster, run_task)) as pool:
+            _find(advice, Run(pool, deadline_s, watcher), maps=maps)
+    advice.sentences, advice.settings = sentences_of(advice), settings_of(advice)
+    advice.rows = rows_of(advice)
     return advice
 
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.common.yamlfile import written
 from simmpp.run import words
-from simmpp.studies.advise.advise import NODE_SECONDS, Advice
+from simmpp.studies.advise.advice import NODE_SECONDS, Advice
 from simmpp.studies.advise.candidates import Candidate
 from simmpp.studies.advise.confidence import LEAST_SEEDS
 from simmpp.studies.advise.sensitivity import Swing
@@ -20,7 +20,7 @@ MOST_TOLD = 4
 """Names in a list, before the rest is counted."""
 
 
-def sentences(advice: Advice) -> list[str]:
+def sentences_of(advice: Advice) -> list[str]:
     """All of it."""
     if advice.chosen is None:
         return [*_nothing(advice), *_unfit(advice)]

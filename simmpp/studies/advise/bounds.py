@@ -18,7 +18,7 @@ def bound_of(candidate: Candidate, workload: Workload) -> int:
     """A makespan in ps: all tests and rays, dealt evenly or, where rays stay, as pixels are."""
     machine, rules = candidate.machine, candidate.policy.rules
     even_ps = bound_ps(workload, machine)
-    leaves = rules.sends or rules.idle is not None  # work can go elsewhere
+    leaves = rules.sends or candidate.policy.rests  # work can go elsewhere
     pixels = candidate.config.settings.placement.pixels
     if leaves or machine.is_uneven or pixels == "random":
         return even_ps

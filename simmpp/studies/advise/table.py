@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from simmpp.common.files import Row
-from simmpp.studies.advise.advise import Advice
+from simmpp.studies.advise.advice import Advice
 
 FILE = "advise.csv"
 COLUMNS = (

@@ -11,11 +11,11 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.files import write_csv
 from simmpp.config.config import config_from_mapping
 from simmpp.run.inputs import workload_of
-from simmpp.studies.advise.advise import Advice, advise
-from simmpp.studies.advise.answer import sentences, settings_of
+from simmpp.studies.advise.advice import Advice
+from simmpp.studies.advise.advise import advise
 from simmpp.studies.advise.candidates import candidates_of
 from simmpp.studies.advise.running import Watcher
-from simmpp.studies.advise.table import COLUMNS, rows_of
+from simmpp.studies.advise.table import COLUMNS
 
 GOLDEN = Path(__file__).parents[3] / "golden" / "advise"
 SOME = ["replicated", "object", "ray", "concurrent-random"]
@@ -45,8 +45,8 @@ def answers() -> dict[str, Advice]:
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_an_answer_is_what_it_was(name: str, answers: dict[str, Advice], tmp_path: Path) -> None:
-    write_csv(rows_of(answers[name]), COLUMNS, tmp_path / "advise.csv")
-    told = "".join(f"{line}\n" for line in sentences(answers[name])) + settings_of(answers[name])
+    write_csv(answers[name].rows, COLUMNS, tmp_path / "advise.csv")
+    told = "".join(f"{line}\n" for line in answers[name].sentences) + answers[name].settings
     for found, path in (
         ((tmp_path / "advise.csv").read_text(), GOLDEN / f"{name}.csv"),
         (told, GOLDEN / f"{name}.txt"),
@@ -88,14 +88,14 @@ def test_more_memory_never_makes_what_fits_not_fit() -> None:
 def test_the_order_of_candidates_and_nodes_has_no_part_in_it(answers: dict[str, Advice]) -> None:
     turned = question("7 kB", processors=[4, 2], candidates=SOME[::-1])
     again = advise(turned)
-    assert sentences(again) == sentences(answers["time"])
-    assert rows_of(again) == rows_of(answers["time"])
+    assert again.sentences == answers["time"].sentences
+    assert again.rows == answers["time"].rows
 
 
 def test_nothing_fits_and_more_nodes_would_do() -> None:
     advice = advise(question("3 kB", processors=[1]))
     assert advice.chosen is None and advice.runs == 0
-    first, second = sentences(advice)
+    first, second = advice.sentences
     assert "Nothing fits into 3 kB a node. The least memory that would do is" in first
     assert advice.least_nodes is not None and advice.least_nodes.fits
     assert f"on {advice.least_nodes.processors} PEs: the least nodes that would do" in second
@@ -104,7 +104,7 @@ def test_nothing_fits_and_more_nodes_would_do() -> None:
 def test_nothing_fits_whatever_the_number_of_nodes() -> None:
     advice = advise(question("10 B", processors=[1024]))
     assert advice.least_nodes is None
-    assert "no number of nodes that was looked at would do" in sentences(advice)[1]
+    assert "no number of nodes that was looked at would do" in advice.sentences[1]
 
 
 def test_ctrl_c_tells_the_best_so_far() -> None:
@@ -116,7 +116,7 @@ def test_ctrl_c_tells_the_best_so_far() -> None:
     advice = advise(question("7 kB"), watcher=Impatient())
     assert advice.interrupt is not None and advice.runs == 3
     assert advice.verdict.sure is None
-    told = sentences(advice)
+    told = advice.sentences
     assert any(line.startswith("Broken off (interrupted)") for line in told)
 
 
