@@ -18,7 +18,7 @@ from simmpp.sweeps.executors import start_server
     "advise",
     epilog=options.examples(
         "simmpp advise configs/advise.yaml",
-        "simmpp advise mine.yaml --set memory.capacity='64 GB' --set advise.budget=64 --out advice",
+        "simmpp advise configs/advise.yaml --set memory.capacity='60 kB' --out results/advice",
     ),
 )
 @options.config_argument

@@ -29,6 +29,7 @@ class Advice:
     """What is advised, and all that it was found from."""
 
     config: Config
+    """That asks."""
     scene: str
     """How the workload is called."""
     candidates: list[Candidate]
@@ -36,8 +37,11 @@ class Advice:
     bounds: list[int]
     """Of those that fit, in ps."""
     contest: Contest
+    """The race, with all that was measured."""
     verdict: Verdict
+    """What came out of it."""
     sensitivity: Sensitivity = field(default_factory=Sensitivity)
+    """What it hangs on."""
     runs: int = 0
     """Simulations of the race."""
     further_runs: int = 0
