@@ -402,6 +402,18 @@ def random_case(seed: int) -> Case:
     return Case(workload, machine, placement, random_policy(rng), order)
 
 
+def some_stealing(case: Case, seed: int) -> Case:
+    """The case where, in every third of them, PEs steal; draws from a stream of its own."""
+    steal = _pick(np.random.default_rng((seed, 20)), ("none", "none", "half"))
+    return replace(case, policy=replace(case.policy, steal=steal))
+
+
+def stealing_case(seed: int) -> Case:
+    """The random case of a seed, where PEs steal."""
+    case = random_case(seed)
+    return replace(case, policy=replace(case.policy, steal="half"))
+
+
 def _some_islands(processors: int, seed: int) -> int:
     """Two thirds of the machines are whole; draws from a stream of its own."""
     rng = np.random.default_rng((seed, 16))

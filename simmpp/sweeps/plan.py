@@ -19,6 +19,7 @@ from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
 from simmpp.methods.columns import BOUNDED, KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
+from simmpp.run.point import refuse_clash
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import FAILED, FINISHED, SIMULATIONS, record, recorded
 from simmpp.run.rows import in_order, point_row
@@ -152,6 +153,7 @@ def plan_of(config: Config) -> Plan:
     points: list[PlannedPoint] = []
     for point in grid(config):
         _refuse_unknown(point)
+        refuse_clash(point.config, point.policy)
         inputs = repr((point.config.scene_spec, point.config.asked))
         if inputs not in workloads:
             workloads[inputs] = point.config.ray_source.name_and_digest(point.config.picture)

@@ -28,10 +28,11 @@ def roots(workload: Workload) -> str:
 
 
 def primaries(workload: Workload) -> str:
-    """``512 x 512 primary rays``, ``100000 particles``."""
+    """``512 x 512 primary rays``, ``40000 particles``, ``9000 rays of patches in 9 rounds``."""
     rows, columns = workload.picture
     if roots(workload) in ROOTS_OF.values():
-        return f"{workload.n_primaries} {roots(workload)}"
+        rounds = f" in {workload.n_rounds} rounds" if workload.n_rounds > 1 else ""
+        return f"{workload.n_primaries} {roots(workload)}{rounds}"
     each = f"pixels with {workload.samples} " if workload.samples > 1 else ""
     return f"{columns} x {rows} {each}primary rays"
 

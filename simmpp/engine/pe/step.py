@@ -86,7 +86,7 @@ def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     pe.settled_load = pe.load
     unpacks = message == NONE and s.bounded and can_unpack(s, me)
     if message == NONE and not unpacks and not has_ready(s, me):
-        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 or s.steals else SLEEP
     s.activities += 1
     if s.bounded:
         _require_progress(s)

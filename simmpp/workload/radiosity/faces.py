@@ -52,7 +52,7 @@ def _pairs(points: Floats, parts: Ints) -> tuple[NDArray[np.bool_], Floats]:
     far = [other[rows, (apart + k) % 3] for k in range(3)]
     # The common edge is gone along both ways: first of one is last of the other.
     shares = (begin[1] == far[2]).all(axis=1) & (begin[2] == far[1]).all(axis=1)
-    quads = np.stack([begin[0], begin[1], far[0], begin[2]], axis=1)
+    quads = np.stack([begin[2], begin[0], begin[1], far[0]], axis=1)
     ahead = np.roll(quads, -1, axis=1) - quads
     turns = np.cross(np.roll(ahead, 1, axis=1), ahead)
     lengths = np.linalg.norm(ahead, axis=2)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from simmpp.common.compiled import kernel, njit
 from simmpp.scene.scene import Vector
+from simmpp.workload.particles.functions import cosine, sine
 from simmpp.workload.trace.exact import row_of
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.path.philox import numbers
@@ -130,22 +131,7 @@ def disc(u: float, v: float) -> tuple[float, float]:
     if a == 0.0 and b == 0.0:
         return 0.0, 0.0
     if abs(a) > abs(b):
-        sine, cosine = circle(b / a)
-        return a * cosine, a * sine
-    sine, cosine = circle(a / b)
-    return b * sine, b * cosine
-
-
-@kernel
-def circle(turn: float) -> tuple[float, float]:
-    """Sine and cosine of ``turn`` x 45 degrees, at most 1 to either side: of series, since
-    libraries differ in the last digit.
-    """
-    x = turn * (math.pi / 4)
-    term, sine, cosine = 1.0, 0.0, 0.0
-    for n in range(0, 20, 2):  # the next terms are below 1e-20
-        cosine += term
-        term *= x / (n + 1)
-        sine += term
-        term *= -x / (n + 2)
-    return sine, cosine
+        turn = b / a * (math.pi / 4)
+        return a * cosine(turn), a * sine(turn)
+    turn = a / b * (math.pi / 4)
+    return b * sine(turn), b * cosine(turn)

@@ -72,11 +72,13 @@ def _shot(room: Room, trace: Trace, progress: Progress | None) -> Workload:
     """A round for each shot, until little enough is unshot."""
     shooting, n = Shooting(room), room.settings.rays
     batches, homes, weights = list[Recorded](), list[Hits](), list[NDArray[np.float64]]()
+    residuals = list[float]()
     while (rays := shooting.rays()) is not None:
         batch = trace(rays)
         homes.append(shooting.homes)
         weights.append(shooting.powers.sum(axis=1) * UNIT_W)
         shooting.take(room.landed(rays, _hits(batch)))
+        residuals.append(float(shooting.residual))
         batches += batch
         if progress:
             progress(n * len(homes), n * (len(homes) + 1))
@@ -87,6 +89,7 @@ def _shot(room: Room, trace: Trace, progress: Progress | None) -> Workload:
         root_homes=np.concatenate(homes),
         root_rounds=np.repeat(np.arange(len(homes), dtype=np.int32), n),
         root_weights=np.concatenate(weights),
+        round_residuals=np.array(residuals),
         object_results=np.full(room.n_sides // 2, OF_POWER),
     )
 

@@ -37,7 +37,7 @@ def test_quadrilaterals_are_halved_across_their_longer_sides() -> None:
     assert [sorted({point[0] for point in half}) for half in halves] == [[0, 2], [2, 4]]
     quarters = corners(scene_of(SQUARE), 1.0)
     assert [np.mean(quarter, axis=0).tolist() for quarter in quarters] == [
-        [1.5, 0.5, 0], [1.5, 1.5, 0], [0.5, 1.5, 0], [0.5, 0.5, 0]
+        [0.5, 0.5, 0], [0.5, 1.5, 0], [1.5, 0.5, 0], [1.5, 1.5, 0]
     ]  # fmt: skip
 
 
@@ -60,7 +60,9 @@ def test_halves_keep_their_front_and_all_of_the_area() -> None:
 
 
 def test_triangles_of_a_mesh_are_joined_where_they_make_a_quadrilateral() -> None:
-    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 1, 1), (0, 1, 1)], np.float64)
+    points = np.array(
+        [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 1, 1), (0, 1, 1)], np.float64
+    )
     faces = [(0, 1, 2), (0, 2, 3), (3, 2, 4), (3, 4, 5), (0, 1, 2)]
     mesh = MeshPart(points, np.array(faces, np.int32), 0)
     found = corners(scene_of(mesh), 10.0)
@@ -122,11 +124,13 @@ WRONG_SETTINGS = {
 def test_settings_that_make_no_sense_are_refused(problem: str) -> None:
     with pytest.raises(ConfigError) as caught:
         config_from_mapping({"scene": "mountain:3", "radiosity": WRONG_SETTINGS[problem]})
-    assert f"radiosity.{problem}" in str(caught.value) or f"radiosity: {problem}" in str(caught.value)
+    assert str(caught.value).startswith(("radiosity." + problem, "radiosity: " + problem))
 
 
 def test_there_is_a_picture_or_radiosity() -> None:
-    with pytest.raises(ConfigError, match=r"expected one of picture, radiosity.*got picture and ra"):
+    with pytest.raises(
+        ConfigError, match=r"expected one of picture, radiosity.*got picture and ra"
+    ):
         config_from_mapping({"scene": "mountain:3", "picture": {}, "radiosity": {}})
     with pytest.raises(ConfigError, match=r"radiosity goes with a scene that is traced"):
         config_from_mapping({"scene": {"workload": "w.parquet"}, "radiosity": {}})

@@ -7,13 +7,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from path_scenes import quad, walls
 
+from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError, SceneError
 from simmpp.scene.scene import Camera, Material, Polygon, Scene
 from simmpp.workload.check import check
 from simmpp.workload.picture import Picture
-from simmpp.workload.radiosity.points import circle, disc, mirrored
+from simmpp.workload.radiosity.points import disc, mirrored
 from simmpp.workload.radiosity.room import Room, room_of
 from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.radiosity.source import RadiositySource
@@ -21,6 +23,7 @@ from simmpp.workload.radiosity.tracing import again, trace_patches
 from simmpp.workload.trace import tracer
 from simmpp.workload.workload import ARRAYS, FORM_FACTOR, Workload
 
+Floats = NDArray[np.float64]
 GREY, LAMP = Material((0.6, 0.6, 0.6)), Material((0.3, 0.3, 0.3), emission=(3.0, 2.0, 1.0))
 CAMERA = Camera((5.0, 0.3, 5.0), (5.0, 10.0, 4.5), angle_degrees=80.0)
 LAMP_FACE = quad((3, 3, 9.5), (3, 7, 9.5), (7, 7, 9.5), (7, 3, 9.5), material=1)
@@ -74,8 +77,8 @@ def test_rounds_are_shots() -> None:
     assert (np.diff(residuals) < 0).all()
     assert residuals[-1] <= 0.01 < residuals[-2]
     powers = workload.root_weights.reshape(-1, 50).sum(axis=1)
-    assert powers.argmax() == 0
-    assert residuals[0] >= 1 - powers[0] / (2 * powers[0])
+    assert (np.diff(powers[:4]) <= 0).all()  # the lamp's four sides
+    assert powers.sum() > 2.0**17
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -121,7 +124,8 @@ def test_results_have_a_row_for_each_patch() -> None:
     assert (table["red"][~lamp] < 3).all()
     assert (table["back_red"][~lamp] > 0).any()  # some walls show their backs to the inside
     assert table["hits"].sum() == (workload.hits >= 0).sum()
-    assert table["x"].min() > 0
+    assert table["x"].min() == 0
+    assert table["x"].max() == 10
     assert room.patches.areas.sum() == pytest.approx(600 + 16)
 
 
@@ -160,19 +164,20 @@ def test_too_many_rays_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
             trace_patches(room, threads=1)
 
 
+@njit
+def _discs(n: int, points: Floats) -> None:
+    for k in range(n):
+        points[k, 0], points[k, 1] = disc((k + 0.5) / n, mirrored(k, 2))
+
+
 def test_points_lie_evenly_on_the_disc() -> None:
     n = 4096
-    points = np.array([disc((k + 0.5) / n, mirrored(k, 2)) for k in range(n)])
+    points = np.empty((n, 2))
+    _discs(n, points)
     radii = (points**2).sum(axis=1)
-    assert radii.max() < 1
+    assert radii.max() <= 1 + 1e-15
     assert np.abs(np.sort(radii) - (np.arange(n) + 0.5) / n).max() < 0.01
     assert np.abs(points.mean(axis=0)).max() < 0.01
-
-
-def test_sine_and_cosine_are_the_librarys_to_the_last_digits() -> None:
-    for turn in np.linspace(-1, 1, 101):
-        expected = np.sin(turn * np.pi / 4), np.cos(turn * np.pi / 4)
-        assert np.allclose(circle(turn), expected, rtol=0, atol=3e-16)
 
 
 def test_a_patch_is_a_polygon_of_its_own() -> None:
