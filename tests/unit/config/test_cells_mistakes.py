@@ -20,7 +20,10 @@ MISTAKES = [
     ("scene: tetra\nparticles: {}", "particles goes with scene.cells, not with scene.spd"),
     (of_slab("source: {low: [0, 0, 1.1]}"), "scene.cells: source: value [0.0, 0.0, 1.1] to"),
     (of_slab("source: {low: [0, 1, 0], high: [1, 0, 1]}"), "scene.cells: source: value"),
-    (of_slab("source: {low: [.nan, 0, 0]}"), "scene.cells.source.low: value [nan, 0, 0]: expected three"),
+    (
+        of_slab("source: {low: [.nan, 0, 0]}"),
+        "scene.cells.source.low: value [nan, 0, 0]: expected three",
+    ),
     (of_slab("source: {low: [0, 0, 0], towards: [0, 0, 0]}"), "scene.cells.source: towards is"),
     (
         of_slab("materials: {slab: {albedo: 1.1}}"),
