@@ -49,6 +49,7 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
+from simmpp.workload.describe import is_picture
 from simmpp.workload.sources import require_drawn
 
 
@@ -236,13 +237,14 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
     source, failed = point.config.ray_source, False
+    what = "the picture" if is_picture(point.workload) else "the result"
     nothing = np.zeros(0, np.int32)
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
         with at_work(f"verifying {run.parameters.title}"):
             problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
+        verdict = f"differs: {problem}" if problem else f"{what} of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem != ""
     if failed:

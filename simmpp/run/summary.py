@@ -13,10 +13,12 @@ from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
+from simmpp.run import words
 from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.workload.describe import ROOTS_OF, primaries, roots
+from simmpp.workload.workload import PARTICLE
 
 Cell = Callable[[PolicyRun], str]
 
@@ -197,6 +199,14 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
+def _other_words(point: Point) -> list[str]:
+    """What those who compute particles call the policies."""
+    if roots(point.workload) != ROOTS_OF[PARTICLE]:
+        return []
+    called = [f"{words.policy(name)} is {word}" for name, word in words.OF_PARTICLES.items()]
+    return [f"in the words of particle transport: {', '.join(called)}"]
+
+
 def _stuck(runs: Sequence[PolicyRun]) -> list[str]:
     """Runs that came to no end, as no PE may escape."""
     uses = [(run.parameters.title, run.result.memory) for run in runs]
@@ -209,7 +219,7 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
-    lines += [*_memory(point, runs), *_idle_at_first(point)]
+    lines += [*_memory(point, runs), *_idle_at_first(point), *_other_words(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs
