@@ -17,6 +17,7 @@ from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import OF_HOMES, Memory, Placement, PlacementRules, island_of
 from simmpp.placement.residents import Deal, as_csr, filling, kept_count, replicas, resident_count
 from simmpp.placement.rooms import TO_FILL
+from simmpp.placement.rounds import window_of
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
 
@@ -51,6 +52,8 @@ def place(
         islands=rules.islands,
         capacity=memory.bounds,
         filling=filling(deal, memory, seed),
+        window=window_of(rules.rounds),
+        tallies=rules.tallies,
     )
     return _spread(rules, workload, placement)
 
@@ -120,7 +123,12 @@ def rotated(
     circles = (_circle(owner_of, island, pe, seed) for pe in range(processors))
     held = [_turns(circle, owner_of, counts) for circle in circles]
     placements = [
-        Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on, islands=rules.islands)
+        Placement(
+            *(processors, owner_of, *as_csr(of_fraction), 0, starts_on),
+            islands=rules.islands,
+            window=window_of(rules.rounds),
+            tallies=rules.tallies,
+        )
         for of_fraction in zip(*held, strict=True)
     ]
     return [_spread(rules, workload, placement) for placement in placements]

@@ -83,7 +83,7 @@ def test_without_a_capacity_there_is_nothing_to_fill() -> None:
     memory, config = simmpp.Memory(fraction="fill"), {"scene": "mountain:3", "processors": 4}
     with pytest.raises(ConfigError, match="memory: fraction: value 'fill': expected a capacity"):
         simmpp.place(WORKLOAD, 4, memory, simmpp.PlacementRules(), 0)
-    with pytest.raises(ConfigError, match="memory: fraction: value 'fill': expected a capacity"):
+    with pytest.raises(ConfigError, match=r"memory\.fraction: value 'fill': expected a capacity"):
         simmpp.sweep({**config, "memory": {"fraction": "fill"}})
 
 
