@@ -39,7 +39,7 @@ def test_run_draws_tells_and_verifies(over: tuple[str, ...]) -> None:
     assert "rays of patches" in done.stdout.splitlines()[0]
     verdicts = [line for line in done.stdout.splitlines() if line.startswith("verify ")]
     assert len(verdicts) == 4
-    assert all(line.endswith(": the picture of its tests is the same") for line in verdicts)
+    assert all(line.endswith(": the result of its tests is the same") for line in verdicts)
     with Image.open("p.png") as whole, Image.open("p-ray.png") as finished:
         assert whole.size == (12, 12)
         assert (np.array(whole) == np.array(finished)).all()
