@@ -180,7 +180,7 @@ def _fullest(figure: Figure, motion: Motion) -> None:
     figure.set_size_inches(7.5, 4.1)
     axes, edges = figure.subplots(), motion.times_ps * MS
     bottom = np.zeros(len(edges) - 1)
-    parts = {
+    parts: dict[str, tuple[Any, str, str]] = {
         "objects for good": (fullest.resident, BLUE, ""),
         "kept free: requests, escape": (fullest.kept_free, "0.8", ""),
         "fetched objects": (fullest.fetched, ORANGE, ""),
