@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import groupby
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.common.yamlfile import written
@@ -96,7 +95,7 @@ def _sure(advice: Advice) -> Iterator[str]:
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
-            f" {round(given.kept * given.n_draws)} of {given.n_draws} machines:"
+            f" {given.n_kept} of {given.n_draws} machines:"
             f" {_share(verdict.sure * given.kept)} sure of both."
         )
     if verdict.ties and not isinstance(asked.goal, int):
@@ -132,14 +131,15 @@ def _unfit(advice: Advice) -> Iterator[str]:
         told.append(
             f"anything on {_or(nothing)} PEs (at least {format_bytes(least)} on {nothing[-1]})"
         )
-    rest = sorted(
-        (c for c in unfit if c.processors not in nothing), key=lambda c: (c.setup.name, c.order)
-    )
-    for name, group in groupby(rest, key=lambda c: c.setup.name):
-        of_name = list(group)
+    alike: dict[tuple[str, str], list[str]] = {}
+    for name in dict.fromkeys(c.setup.name for c in unfit):
+        of_name = [c for c in unfit if c.setup.name == name and c.processors not in nothing]
         needs = dict.fromkeys(format_bytes(c.least_bytes) for c in of_name)
-        on = f" on {_or(c.processors for c in of_name)}"
-        told.append(f"{name}{on} (needs {' and '.join(needs)} a node)")
+        on = _or(c.processors for c in of_name)
+        if of_name:
+            alike.setdefault((on, " and ".join(needs)), []).append(name)
+    for (on, needs_of), names in alike.items():
+        told.append(f"{_listed(names)} on {on} (needs {needs_of} a node)")
     if told:
         yield f"Doesn't fit into {has}: {'; '.join(told)}."
 
