@@ -141,13 +141,22 @@ def _find(advice: Advice, run: Run, *, maps: bool) -> None:
 
 def _map(advice: Advice, run: Run) -> None:
     """What would win with other memory."""
-    race, ranking = advice.contest.race, dict[int, list[str]]()
-    for n in sorted(race.costs, key=lambda n: (race.mean(n), advice.fitting[n].order)):
-        candidate = advice.fitting[n]
-        ranking.setdefault(candidate.processors, []).append(candidate.setup.name)
     workload = workload_of(advice.config)
-    for place in memory_map(advice.config, workload, ranking, run):
+    for place in memory_map(advice.config, workload, _promising(advice), run):
         advice.places.append(place)
+
+
+def _promising(advice: Advice) -> dict[int, list[str]]:
+    """For each number of nodes the names of setups: what has not fit, what was best, the others."""
+    race, fitting = advice.contest.race, advice.fitting
+    ended = [(n, fitting[n]) for n in sorted(race.costs, key=lambda n: (race.mean(n), n))]
+    found = {}
+    for size in sorted({each.processors for each in advice.candidates}):
+        unfit = [e.setup.name for e in advice.candidates if e.processors == size and not e.fits]
+        here = [each.setup.name for _, each in ended if each.processors == size]
+        elsewhere = [each.setup.name for _, each in ended if each.processors != size]
+        found[size] = list(dict.fromkeys([*unfit, *here, *elsewhere]))
+    return found
 
 
 def study_of(advice: Advice, run: Run) -> Study | None:

@@ -60,7 +60,7 @@ def _use(advice: Advice) -> Iterator[str]:
     chosen, number = advice.chosen, advice.verdict.chosen
     assert chosen is not None and number is not None
     found = advice.makespan_ps(number)
-    bound = _digits(advice.bounds[number])
+    bound = rounded_time(advice.bounds[number])
     text = f"Use {named(chosen)}: {_time(found)}, of which computing alone takes {bound}"
     if advice.asked.goal == NODE_SECONDS:
         text += f"; {_node_seconds(found.mean * chosen.processors)}"
@@ -83,24 +83,31 @@ def _sure(advice: Advice) -> Iterator[str]:
     if verdict.sure is None:
         yield f"How sure that is can't be said from fewer than {LEAST_SEEDS} seeds."
         return
-    if isinstance(asked.goal, int):
-        claim = f"it takes at most {format_ps(asked.goal)}, and fewer nodes do not"
-        claim += f" (each within {float(asked.indifference):.0%})"
-    else:
-        measure = "cheaper" if asked.goal == NODE_SECONDS else "faster"
-        claim = f"no other of {of} is more than {float(asked.indifference):.0%} {measure}"
-    if advice.verdict.is_within or not isinstance(asked.goal, int):
-        sure = words.capital(_share(verdict.sure))
-        yield f"{sure} sure that {claim}, by the chance of placements."
+    claim = _claim(advice, of)
+    is_drawn = any(advice.fitting[number].is_drawn for number in verdict.likely)
+    if claim and is_drawn:
+        yield f"{words.capital(_share(verdict.sure))} sure, with {LEAST_SEEDS} seeds, that {claim}."
+    elif claim:
+        yield f"{words.capital(claim)}; nothing about them is drawn, so seeds have no part in that."
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
             f" {given.n_kept} of {given.n_draws} machines:"
-            f" {_share(verdict.sure * given.kept)} sure of both."
+            f" {_share(verdict.sure * given.kept)} sure{' of both' * is_drawn}."
         )
     if verdict.ties and not isinstance(asked.goal, int):
         others = _listed(named(advice.fitting[n]) for n in verdict.ties)
         yield f"A tie within {float(asked.indifference):.0%} with {others}."
+
+
+def _claim(advice: Advice, of: str) -> str:
+    """What is sure, or not; nothing where a limit is not kept."""
+    goal, most = advice.asked.goal, f"{float(advice.asked.indifference):.0%}"
+    if isinstance(goal, int):
+        text = f"it takes at most {format_ps(goal)}, and fewer nodes do not (each within {most})"
+        return text if advice.verdict.is_within else ""
+    measure = "cheaper" if goal == NODE_SECONDS else "faster"
+    return f"no other of {of} is more than {most} {measure}"
 
 
 def _next(advice: Advice) -> Iterator[str]:
@@ -203,15 +210,16 @@ def _rounded(swing: Swing, value: int) -> str:
 
 
 def _time(found: MeanInterval) -> str:
-    text = _digits(found.mean)
+    text = rounded_time(found.mean)
     if found.low == found.high:
         return text
     if found.low != found.low:
         return f"{text} (one seed)"
-    return f"{text} (95 %: {_digits(found.low)} to {_digits(found.high)})"
+    return f"{text} (95 %: {rounded_time(found.low)} to {rounded_time(found.high)})"
 
 
-def _digits(time_ps: float) -> str:
+def rounded_time(time_ps: float) -> str:
+    """With three digits."""
     return format_ps(int(float(f"{time_ps:.3g}")))
 
 
