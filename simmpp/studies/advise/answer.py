@@ -21,9 +21,11 @@ MOST_TOLD = 4
 
 def sentences_of(advice: Advice) -> list[str]:
     """All of it."""
+    of_a_part = [advice.left_out] if advice.left_out else []
     if advice.chosen is None:
-        return [*_nothing(advice), *_unfit(advice)]
-    return [*_use(advice), *_sure(advice), *_next(advice), *_unfit(advice), *_hangs_on(advice)]
+        return [*_nothing(advice), *of_a_part, *_unfit(advice)]
+    told = [*_use(advice), *of_a_part, *_sure(advice), *_next(advice), *_unfit(advice)]
+    return [*told, *_hangs_on(advice)]
 
 
 def settings_of(advice: Advice) -> str:
@@ -139,12 +141,12 @@ def _unfit(advice: Advice) -> Iterator[str]:
             f"anything on {_or(nothing)} PEs (at least {format_bytes(least)} on {nothing[-1]})"
         )
     alike: dict[tuple[str, str], list[str]] = {}
-    for name in dict.fromkeys(c.setup.name for c in unfit):
-        of_name = [c for c in unfit if c.setup.name == name and c.processors not in nothing]
+    rest = [c for c in unfit if c.processors not in nothing]
+    for name in dict.fromkeys(c.setup.name for c in rest):
+        of_name = [c for c in rest if c.setup.name == name]
         needs = dict.fromkeys(format_bytes(c.least_bytes) for c in of_name)
         on = _or(c.processors for c in of_name)
-        if of_name:
-            alike.setdefault((on, " and ".join(needs)), []).append(name)
+        alike.setdefault((on, " and ".join(needs)), []).append(name)
     for (on, needs_of), names in alike.items():
         told.append(f"{_listed(names)} on {on} (needs {needs_of} a node)")
     if told:
