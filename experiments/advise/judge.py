@@ -8,115 +8,23 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import fmean
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from pairs import developed, judged
-from replay import DRAWS, HERE, INDIFFERENCE, SEEDS, Answer, Known, Question, answered, questions
+from pairs import Pair, developed, judged
+from replay import HERE, SEEDS, Answer, answered, questions
 from replay import recorded as known_pairs
+from rules import baselines, is_right, regret, rights_with_other_constants
 
 from simmpp.common.files import Row, write_csv
 from simmpp.plot.curves import Curve, Panel, Scale, Spread
 from simmpp.plot.matplotlib_panels import draw
 
-SLACK = 1 + INDIFFERENCE
-CAP = 2.0
-"""Regret of what does not fit, or comes to no end: three times as long."""
 BINS = 5
-
-
-def regret(question: Question, candidates: Sequence[Known], chosen: Known | None) -> float:
-    """By what share more than the best it costs: time, node-seconds, or nodes where it is in time.
-
-    A limit counts as kept, by it and by the best, with the indifference on the safe side of each.
-    """
-    if chosen is None or math.isinf(chosen.truth_ps):
-        return CAP
-    truths = [question.cost(each, each.truth_ps) for each in candidates]
-    own = question.cost(chosen, chosen.truth_ps)
-    if math.isinf(question.limit_ps):
-        return own / min(truths) - 1
-    limit = question.limit_ps
-    sizes = [e.processors for e in candidates if e.truth_ps <= limit / SLACK]
-    if own <= limit * SLACK:
-        return max(0.0, chosen.processors / min(sizes) - 1) if sizes else 0.0
-    return own / max(limit, min(truths)) - 1
-
-
-def is_right(question: Question, candidates: Sequence[Known], chosen: Known) -> bool:
-    """No other is better by more than the indifference."""
-    return regret(question, candidates, chosen) <= INDIFFERENCE
-
-
-def rights_with_other_constants(answer: Answer) -> list[bool]:
-    """Likewise on each machine that the advisor did not try, as far as candidates are near."""
-    chosen, question = answer.chosen, answer.question
-    if chosen is None or not chosen.draws:
-        return []
-    found = []
-    for machine in sorted(n for n in chosen.draws if n >= DRAWS):
-        own = question.cost(chosen, chosen.draws[machine])
-        if math.isfinite(question.limit_ps):
-            found.append(own <= question.limit_ps * SLACK)
-            continue
-        costs = (question.cost(e, e.draws.get(machine, math.inf)) for e in answer.candidates)
-        found.append(own <= min(costs) * SLACK)
-    return found
-
-
-# --- what it has to beat ---
-
-Choice = Callable[[Question, Sequence[Known]], float]
-
-
-def regret_of_best(question: Question, everyone: Sequence[Known], chosen: list[Known]) -> float:
-    """The least regret of some candidates: who follows a rule may choose the nodes in hindsight."""
-    return min((regret(question, everyone, each) for each in chosen), default=CAP)
-
-
-def setups_of(everyone: Sequence[Sequence[Known]], policy: str = "") -> list[str]:
-    """Names of setups, of all policies or of one."""
-    return sorted({e.setup for of in everyone for e in of if policy in ("", e.policy)})
-
-
-def baselines(answers: Sequence[Answer]) -> dict[str, float]:
-    """Mean regret of each rule, with the setup for it that is best in hindsight."""
-    asked = [(answer.question, answer.candidates) for answer in answers]
-    everyone = [candidates for _, candidates in asked]
-
-    def of(setup: str, first: str = "") -> float:
-        total = []
-        for question, candidates in asked:
-            chosen = [e for e in candidates if e.setup == first]
-            chosen = chosen or [e for e in candidates if e.setup == setup]
-            total.append(min(CAP, regret_of_best(question, candidates, chosen)))
-        return fmean(total)
-
-    return {
-        "always concurrent": min(map(of, setups_of(everyone, "concurrent"))),
-        "always object": min(map(of, setups_of(everyone, "object"))),
-        "replicated if it fits and else ray": min(
-            of(setup, "replicated") for setup in setups_of(everyone, "ray")
-        ),
-        "the paper's model": fmean(min(CAP, regret(q, e, _by_model(q, e))) for q, e in asked),
-        "the best single setup": min(map(of, setups_of(everyone))),
-    }
-
-
-def _by_model(question: Question, candidates: Sequence[Known]) -> Known | None:
-    """Object or ray dataflow, and the number of nodes, by the paper's formulas."""
-    known = [e for e in candidates if e.setup in ("object", "ray")]
-    within = [e for e in known if e.model_ps <= question.limit_ps]
-    if math.isfinite(question.limit_ps) and within:
-        least = min(e.processors for e in within)
-        known = [e for e in within if e.processors == least]
-    return min(known, key=lambda e: question.cost(e, e.model_ps), default=None)
-
-
-# --- tables ---
 
 
 def row_of(answer: Answer) -> Row:
@@ -134,6 +42,7 @@ def row_of(answer: Answer) -> Row:
         "on": chosen.processors if chosen else "",
         "regret": round(regret(question, candidates, chosen), 5),
         "sure": sure,
+        "drawn": int(any(candidates[n].is_drawn for n in verdict.likely)),
         "right": int(chosen is not None and is_right(question, candidates, chosen)),
         "kept": "" if answer.kept is None else answer.kept,
         "machines": len(rights),
@@ -167,7 +76,32 @@ def summary(rows: Sequence[Row], answers: Sequence[Answer]) -> dict[str, float]:
         "share of the runs that differ": sum(r["runs"] for r in rows)
         / sum(r["all_runs"] for r in rows),
     }
+    drawn = [row for row in rows if row["sure"] != "" and row["drawn"]]
+    if drawn:
+        found["answers in which something is drawn"] = float(len(drawn))
+        squares = [(row["sure"] - row["right"]) ** 2 for row in drawn]
+        found["Brier score of how sure, of these"] = fmean(squares)
     return found | {f"mean regret of {name}": value for name, value in baselines(answers).items()}
+
+
+def memory_kept(pairs: Sequence[Pair]) -> dict[str, float]:
+    """Runs that held more than a node has, and what was told not to fit without a reason."""
+    names = {pair.name for pair in pairs}
+    candidates: Any = pd.read_parquet(HERE / "candidates.parquet")
+    candidates = candidates[candidates["pair"].isin(names)]
+    runs: Any = pd.read_parquet(HERE / "truth.parquet")
+    sizes = candidates.groupby("pair")["capacity_bytes"].first()
+    bounded = runs[runs["pair"].isin(names) & runs["held_bytes"].notna()]
+    over = bounded["held_bytes"] > bounded["pair"].map(sizes)
+    unfit = candidates[candidates["fits"] == 0]
+    return {
+        "runs in bounded memory": float(len(bounded)),
+        "of these held more than the capacity": float(over.sum()),
+        "candidates that do not fit": float(len(unfit)),
+        "of these without a static sum above the capacity": float(
+            (unfit["lacking_bytes"] <= 0).sum()
+        ),
+    }
 
 
 def reliability(rows: Sequence[Row]) -> Iterator[Row]:
@@ -235,19 +169,36 @@ def main() -> None:
             for question in questions(pair.name, known[pair.name])
         ]
         rows = [row_of(answer) for answer in answers]
-        found[name] = summary(rows, answers)
+        found[name] = summary(rows, answers) | memory_kept(pairs)
         print(name, pd.Series(found[name]).to_string(), sep="\n")
     with open(HERE / "expected.csv", encoding="utf-8", newline="") as file:
         expected = {row["measure"]: row for row in csv.DictReader(file)}
-    measures = [
+    better = {
+        f"mean regret below that of {name}": found["judged"]["regret mean"] < value
+        for measure, value in found["judged"].items()
+        if (name := measure.removeprefix("mean regret of ")) != measure
+    }
+    over = found["judged"]["of these held more than the capacity"]
+    better["every run that was told to fit held no more than the capacity"] = over == 0
+    measures: list[Row] = [
         {
             "measure": measure,
             "goal": expected.get(measure, {}).get("goal", ""),
             "expected": expected.get(measure, {}).get("expected", ""),
             "judged": round(value, 5),
-            "developed": round(found["developed"][measure], 5),
+            "developed": round(found["developed"].get(measure, math.nan), 5),
         }
         for measure, value in found["judged"].items()
+    ]
+    measures += [
+        {
+            "measure": measure,
+            "goal": expected[measure]["goal"],
+            "expected": expected[measure]["expected"],
+            "judged": "yes" if holds else "no",
+            "developed": "",
+        }
+        for measure, holds in better.items()
     ]
     write_csv(measures, list(measures[0]), HERE / "judged.csv")
     write_csv(rows, list(rows[0]), HERE / "answers.csv")
