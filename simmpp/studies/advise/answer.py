@@ -120,10 +120,10 @@ def _next(advice: Advice) -> Iterator[str]:
         return
     runner_up, own = advice.fitting[others[0]], advice.makespan_ps(advice.verdict.chosen)
     found = advice.makespan_ps(others[0])
-    text = f"Runner-up: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
+    first = "Runner-up" if found.mean >= own.mean else "As good, but not as simple"
+    text = f"{first}: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
     if runner_up.processors != chosen.processors:
-        ratio = runner_up.processors / chosen.processors
-        text += f", with {ratio:.3g} times the nodes"
+        text += f", with {_times_the_nodes(runner_up.processors / chosen.processors)}"
     yield f"{text}."
 
 
@@ -227,6 +227,11 @@ def rounded_time(time_ps: float) -> str:
 
 def _node_seconds(time_ps: float) -> str:
     return f"{time_ps / 1e12:.3g} node-seconds"
+
+
+def _times_the_nodes(ratio: float) -> str:
+    known = {2.0: "twice the nodes", 0.5: "half the nodes", 0.25: "a quarter of the nodes"}
+    return known.get(ratio, f"{ratio:.3g} times the nodes")
 
 
 def _compared(ratio: float) -> str:
