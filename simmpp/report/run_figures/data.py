@@ -88,9 +88,9 @@ class Motion:
     def pictures(self) -> list[str]:
         """Names of the pictures that there are of it."""
         networks = OF_NETWORKS.get(type(self.topology), ())
-        fullest = ["fullest"] if self.fullest else []
         # Roots that are no pixels, such as particles, are all in one column.
         pixels = ["pixels"] if self.pixel_owner.shape[1] > 1 else []
+        fullest = ["fullest"] if self.fullest else []
         return ["activity", "progress", *networks, "traffic", "memory", *fullest, *pixels]
 
     @property
