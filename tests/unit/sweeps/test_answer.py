@@ -139,7 +139,7 @@ SENTENCES: dict[str, tuple[list[Row], list[str]]] = {
             "long (the same in all 3 seeds).",
             "The whole scene in every memory (replicated, no dataflow) is the ceiling, not a "
             "choice: it does not fit, as it takes 10 times the memory for objects that the "
-            "dataflows have. With it the picture takes 0.498 times as long as with the fastest "
+            "dataflows have. With it the job takes 0.498 times as long as with the fastest "
             "dataflow.",
         ],
     ),
