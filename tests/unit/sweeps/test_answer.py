@@ -148,7 +148,7 @@ SENTENCES: dict[str, tuple[list[Row], list[str]]] = {
         [
             "Object dataflow and ray dataflow are equally fast, to the ps.",
             "Every memory has room for the whole scene: held there (replicated, no dataflow) the "
-            "picture takes 2 times as long as with the fastest dataflow.",
+            "job takes 2 times as long as with the fastest dataflow.",
         ],
     ),
     "failures": (
