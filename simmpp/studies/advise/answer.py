@@ -80,7 +80,10 @@ def _sure(advice: Advice) -> Iterator[str]:
     unrun = len(advice.fitting) - len(advice.contest.race.costs) - len(advice.contest.race.dropped)
     if advice.broken_off:
         untried = f", {unrun} were not tried" if unrun > 0 and not verdict.sure else ""
-        yield f"Broken off ({advice.broken_off}): of {of}{untried}, this was the best so far."
+        told = f"of {of}{untried}, this was the best so far"
+        if advice.contest.race.is_over:
+            told = "the race was over, what it hangs on is not all known"
+        yield f"Broken off ({advice.broken_off}): {told}."
     if verdict.sure is None:
         yield f"How sure that is can't be said from fewer than {LEAST_SEEDS} seeds."
         return
