@@ -71,7 +71,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays |= round_arrays(workload, placement)
+    arrays |= round_arrays(workload, placement) | deposit_arrays(workload, placement)
     arrays |= room_arrays(placement, machine, needs)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
@@ -247,6 +247,7 @@ def _of_the_policy(
         "sample_ps": parameters.sample_ps or 0,
         "next_sample_ps": parameters.sample_ps or 0,
         "merge_requests": parameters.merge_requests,
+        "deposits_from": parameters.batch,
         "packing": PACKING[parameters.packing],
     }
 
