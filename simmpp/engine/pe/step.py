@@ -42,8 +42,8 @@ from simmpp.engine.pe.peers import sample_loads
 from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_ready
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
-from simmpp.engine.pe.tallies import leave
 from simmpp.engine.pe.talking import get_on, rest, wake
+from simmpp.engine.pe.tallies import leave
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
