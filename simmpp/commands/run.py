@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import click
-import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands.parts import options, short_cuts
@@ -17,9 +15,8 @@ from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.pictures import until_of, write_picture, write_unfinished
 from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
 from simmpp.commands.parts.tables import numbers
+from simmpp.commands.parts.tallies import verify_runs, write_results
 from simmpp.commands.parts.terminal import (
-    FAILED,
-    at_work,
     go_on,
     notice,
     progress_bars,
@@ -85,11 +82,12 @@ from simmpp.workload.sources import require_drawn
     "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
 )
+@options.path("--results", "Write what rays leave in each object, as .parquet.", metavar="FILE")
 @options.no_code
 @click.option(
     "--verify",
     is_flag=True,
-    help="Make the picture again from the tests that the simulated PEs did, and compare.",
+    help="Make picture and results again from the tests that the simulated PEs did, and compare.",
 )
 def run_command(
     config_path: Path,
@@ -101,6 +99,7 @@ def run_command(
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
+    results: Path | None,
     verify: bool,
     may_run: bool,
 ) -> None:
@@ -113,6 +112,7 @@ def run_command(
     config = load_config(config_path, (*overrides, *engine), may_run=may_run)
     tell_files(config)
     options.writable(picture, "--picture", ".png")
+    options.writable(results, "--results", ".parquet")
     until_ps = until_of(until, picture)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
@@ -128,7 +128,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-    looks = Looks(picture, until_ps, timeline, window_ps, figures)
+    looks = Looks(picture, until_ps, timeline, window_ps, figures, results)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -141,6 +141,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     require_fitting(point)
     if looks.picture:
         write_picture(point, looks.picture)
+    if looks.results:
+        write_results(point, looks.results)
     runs: list[PolicyRun] = []
     try:
         with recorders_of(point, looks) as recorders:
@@ -158,7 +160,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         unfinished = write_unfinished(point, runs, looks.picture, looks.until_ps)
     _print_files(out, looks, unfinished)
     if verify:
-        _verify(point, runs)
+        has_results = looks.results is not None or bool(point.workload.object_results.any())
+        verify_runs(point, runs, tallies=has_results)
 
 
 def _simulate(
@@ -221,26 +224,10 @@ def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
 def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
-    looked = (looks.picture, *unfinished, looks.timeline, looks.figures)
+    looked = (looks.picture, *unfinished, looks.results, looks.timeline, looks.figures)
     files = [*rows, *filter(None, looked)]
     if files:
         say()
     wrote(*files)
     if out:
         go_on("report", out)
-
-
-def _verify(point: Point, runs: list[PolicyRun]) -> None:
-    """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    source, failed = point.config.ray_source, False
-    nothing = np.zeros(0, np.int32)
-    for run in runs:
-        tests = (run.result.tested_rays, run.result.tested_objects)
-        rays, objects = (nothing if column is None else column for column in tests)
-        with at_work(f"verifying {run.parameters.title}"):
-            problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
-        say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem != ""
-    if failed:
-        sys.exit(FAILED)

@@ -20,7 +20,7 @@ from simmpp.machine.machine import SERVICES
 from simmpp.workload.tallies import tally_of, tally_of_tests
 from simmpp.workload.workload import FORM_FACTOR, Workload
 
-CASES = int(os.environ.get("SIMMPP_TEST_CASES", "60"))
+CASES = int(os.environ.get("SIMMPP_TEST_CASES", "40"))
 FIRST_SEED = int(os.environ.get("SIMMPP_TEST_FIRST_SEED", "0"))
 SEEDS = range(FIRST_SEED, FIRST_SEED + CASES)
 
@@ -33,6 +33,10 @@ def other_case(seed: int) -> Case:
     if seed % 3 == 0 or case.placement.islands > 1:
         tallies = "reduce"
     placement = replace(case.placement, window=window, tallies=tallies)
+    if rng.random() < 0.7:
+        drawn = rng.integers(0, int(rng.integers(2, 7)), workload.n_primaries)
+        rounds = np.unique(drawn, return_inverse=True)[1].astype(np.int32)
+        workload = replace(workload, root_rounds=rounds if rounds.any() else rounds[:0])
     if seed % 2:
         workload = replace(workload, kinds=as_patches(workload))
     case = replace(case, workload=workload, placement=placement)
