@@ -23,7 +23,6 @@ from simmpp.commands.parts.recording import (
 )
 from simmpp.commands.parts.results import check_results, write_results
 from simmpp.commands.parts.tables import numbers
-from simmpp.commands.parts.tallies import verify_runs, write_results
 from simmpp.commands.parts.terminal import (
     go_on,
     notice,
@@ -33,6 +32,7 @@ from simmpp.commands.parts.terminal import (
     wrote,
 )
 from simmpp.commands.parts.tracing import workload
+from simmpp.commands.parts.verifying import verify_runs
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
@@ -46,7 +46,6 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
-from simmpp.workload.describe import is_picture
 from simmpp.workload.sources import require_drawn
 
 
@@ -76,7 +75,7 @@ from simmpp.workload.sources import require_drawn
 )
 @options.path(
     "--results",
-    "Write what comes of radiosity or particles, object by object: .csv or .parquet.",
+    "Write what comes of the rays, object by object: .csv or .parquet.",
     metavar="FILE",
 )
 @options.path(
@@ -95,7 +94,6 @@ from simmpp.workload.sources import require_drawn
     "Folder for pictures of every run: what PEs do, traffic, torus, pixels, memory.",
     metavar="DIR",
 )
-@options.path("--results", "Write what rays leave in each object, as .parquet.", metavar="FILE")
 @options.no_code
 @click.option(
     "--verify",
@@ -113,7 +111,6 @@ def run_command(
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
-    results: Path | None,
     verify: bool,
     may_run: bool,
 ) -> None:
@@ -126,9 +123,8 @@ def run_command(
     config = load_config(config_path, (*overrides, *engine), may_run=may_run)
     tell_files(config)
     options.writable(picture, "--picture", ".png")
-    options.writable(results, "--results", ".parquet")
     until_ps = until_of(until, picture)
-    check_results(config, results)
+    check_results(results)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -143,11 +139,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-<<<<<<< HEAD
-    looks = Looks(picture, until_ps, timeline, window_ps, figures, results)
-=======
     looks = Looks(picture, until_ps, results, timeline, window_ps, figures)
->>>>>>> main
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -237,23 +229,3 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
     wrote(*files)
     if out:
         go_on("report", out)
-<<<<<<< HEAD
-=======
-
-
-def _verify(point: Point, runs: list[PolicyRun]) -> None:
-    """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    source, failed = point.config.ray_source, False
-    what = "the picture" if is_picture(point.workload) else "the result"
-    nothing = np.zeros(0, np.int32)
-    for run in runs:
-        tests = (run.result.tested_rays, run.result.tested_objects)
-        rays, objects = (nothing if column is None else column for column in tests)
-        with at_work(f"verifying {run.parameters.title}"):
-            problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else f"{what} of its tests is the same"
-        say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem != ""
-    if failed:
-        sys.exit(FAILED)
->>>>>>> main

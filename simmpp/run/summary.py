@@ -13,11 +13,7 @@ from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
-<<<<<<< HEAD
-from simmpp.run import rounds
-=======
-from simmpp.run import words
->>>>>>> main
+from simmpp.run import rounds, words
 from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
@@ -227,11 +223,8 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
-<<<<<<< HEAD
-    lines += [*rounds.told(point, runs), *_memory(point, runs), *_idle_at_first(point)]
-=======
-    lines += [*_memory(point, runs), *_idle_at_first(point), *_other_words(point)]
->>>>>>> main
+    lines += [*rounds.told(point, runs), *_memory(point, runs)]
+    lines += [*_idle_at_first(point), *_other_words(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

@@ -107,11 +107,7 @@ class Bounded(World):
         escapes = self.bounds.has_escape
         can_ask = any(lacking) and (self.rules.ask is not None or escapes)
         request = self.machine.header_bytes + self.machine.request_bytes
-<<<<<<< HEAD
-        own = sum(self.object_bytes[o] for o in pe.resident) + self.copies()
-=======
-        own = sum(self.object_bytes[o] for o in self.before[pe.number])
->>>>>>> main
+        own = sum(self.object_bytes[o] for o in self.before[pe.number]) + self.copies()
         sizes = [self.object_bytes[o] for o in lacking[pe.number]]
         escape = max(sizes, default=0) if can_ask and escapes else 0
         return Parts(0, own, (self.island - 1) * request if can_ask else 0, escape)

@@ -34,7 +34,6 @@ class Looks(NamedTuple):
     timeline: Path | None
     window_ps: tuple[int, int] | None
     figures: Path | None
-    results: Path | None
 
 
 def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:

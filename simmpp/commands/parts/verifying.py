@@ -1,35 +1,23 @@
-"""What comes of the rays of ``simmpp run``: written as a table, and made again from their tests."""
+"""Did the simulated PEs make what one processor makes? Asked of their tests by ``run --verify``."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-from pyarrow import parquet
 
 from simmpp.commands.parts.terminal import FAILED, at_work, say
-from simmpp.common.files import replaced
 from simmpp.run.point import Point, PolicyRun
-from simmpp.workload.tallies import table_of, tally_of, tally_of_tests
-
-
-def write_results(point: Point, path: Path) -> None:
-    """What one processor alone would find: a row for each object."""
-    with at_work("adding up results"):
-        columns = point.config.ray_source.results(point.workload)
-        if columns is None:
-            columns = table_of(tally_of(point.workload))
-    with replaced(path) as part, open(part, "wb") as file:
-        parquet.write_table(pa.table(columns), file)
+from simmpp.workload.describe import is_picture
+from simmpp.workload.tallies import tally_of, tally_of_tests
 
 
 def verify_runs(point: Point, runs: Sequence[PolicyRun], *, tallies: bool) -> None:
     """Say for each policy whether its PEs made the picture, and the ``tallies``; exit 1 unless all
     did."""
     source, failed = point.config.ray_source, False
+    what = "the picture" if is_picture(point.workload) else "the result"
     nothing = np.zeros(0, np.int32)
     for run in runs:
         found = (run.result.tested_rays, run.result.tested_objects)
@@ -38,7 +26,7 @@ def verify_runs(point: Point, runs: Sequence[PolicyRun], *, tallies: bool) -> No
             problem = source.verify(point.config.picture, point.workload, rays, objects)
             if tallies and not problem:
                 problem = wrong_tally(point, rays, objects)
-        same = "the picture of its tests is the same"
+        same = f"{what} of its tests is the same"
         if tallies:
             same += f", and so is what they leave in {point.workload.n_objects} objects"
         say(f"verify {run.parameters.title}: {f'differs: {problem}' if problem else same}")
