@@ -8,36 +8,38 @@ for bit.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.errors import WorkloadError
-from simmpp.workload.check import MOST_DEPOSITED
 from simmpp.workload.workload import Workload
 
-UNITS = 2.0**32
+UNITS, BITS, MASK = 2.0**32, np.uint64(32), np.uint64(0xFFFFFFFF)
+MOST_BITS = 30
+"""Of the weights of all rays together, so that int64 holds their sum in units."""
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 
 
 class Tally(NamedTuple):
-    """Of each object; whole numbers, sums in units of 2^-32."""
+    """Of each object, in whole numbers that stand for 2^-32, or for 2^``scale`` times as much."""
 
     sums: Longs
     """(N,) int64: what was deposited."""
     squares: Longs
-    """(N,) int64: the squares of the deposits, each rounded down to a unit."""
+    """(N,) int64: the squares of the deposits without their units, so of 2^32 of them squared,"""
+    rests: Longs
+    """(N,) int64: and those units, each square rounded down to one."""
     counts: Longs
     """(N,) int64: deposits that are not 0."""
+    scale: int = 0
+    """Above 0 where all weights together are 2^30 and more."""
 
 
 def tally_of(workload: Workload) -> Tally:
-    """The tally of all tests that a workload records.
-
-    Raises WorkloadError if what is deposited is too much to be counted.
-    """
+    """The tally of all tests that a workload records."""
     if len(workload.test_deposits):
         return _tally(workload, workload.itinerary_objects, workload.test_deposits)
     return _tally_of_hits(workload, np.flatnonzero(workload.hits >= 0))
@@ -84,35 +86,35 @@ def table_of(tally: Tally) -> dict[str, NDArray[np.generic]]:
     """A row for each object; the sums as numbers."""
     return {
         "object": np.arange(len(tally.sums), dtype=np.int32),
-        "sum": tally.sums / UNITS,
-        "sum_of_squares": tally.squares / UNITS,
+        "sum": tally.sums / UNITS * 2.0**tally.scale,
+        "sum_of_squares": (tally.squares + tally.rests / UNITS) * 4.0**tally.scale,
         "count": tally.counts,
     }
 
 
 def _tally_of_hits(workload: Workload, rays: NDArray[np.signedinteger]) -> Tally:
-    weights = workload.root_weights if len(workload.root_weights) else np.ones(1)
-    if weights.max(initial=0) * UNITS * max(workload.n_rays, 1) >= MOST_DEPOSITED:
-        problem = f"the weights are too great for results: expected at most {2.0**20:g}"
-        raise WorkloadError(problem, where=workload.name)
-    units = np.rint(weights * UNITS).astype(np.int64)
-    roots = workload.pixels[rays] if len(weights) > 1 else np.zeros(len(rays), np.int64)
-    return _tally(workload, workload.hits[rays], units[roots])
+    """Of rays that leave the weight of their root in what they hit."""
+    weights, roots = workload.root_weights, workload.pixels[rays]
+    if len(weights) == 0:
+        return _tally(workload, workload.hits[rays], np.full(len(rays), 1 << 32, np.int64))
+    # Of all rays, so that a part of them has the same units.
+    total = float(weights.max(initial=0)) * workload.n_rays
+    scale = max(0, math.frexp(total)[1] - MOST_BITS)
+    units = np.rint(weights * (UNITS / 2.0**scale)).astype(np.int64)
+    return _tally(workload, workload.hits[rays], units[roots])._replace(scale=scale)
 
 
 def _tally(workload: Workload, objects: Ints, deposits: Longs) -> Tally:
-    squares = _squares(deposits)
-    if squares.sum(dtype=np.float64) >= MOST_DEPOSITED:
-        raise WorkloadError("the squares of deposits are too great", where=workload.name)
-    tally = Tally(*(np.zeros(workload.n_objects, np.int64) for _ in Tally._fields))
-    np.add.at(tally.sums, objects, deposits)
-    np.add.at(tally.squares, objects, squares)
-    np.add.at(tally.counts, objects, (deposits > 0).astype(np.int64))
-    return tally
+    squares, rests = _squares(deposits)
+    counts = (deposits > 0).astype(np.int64)
+    totals = np.zeros((4, workload.n_objects), np.int64)
+    for total, each in zip(totals, (deposits, squares, rests, counts), strict=True):
+        np.add.at(total, objects, each)
+    return Tally(totals[0], totals[1], totals[2], totals[3])
 
 
-def _squares(deposits: Longs) -> Longs:
-    """In units, rounded down; in two halves, as the square itself has 128 bits."""
-    wholes, rest = deposits >> 32, (deposits & 0xFFFFFFFF).astype(np.uint64)
-    small = (rest * rest >> np.uint64(32)).astype(np.int64)
-    return (wholes * wholes << 32) + 2 * wholes * rest.astype(np.int64) + small
+def _squares(deposits: Longs) -> tuple[Longs, Longs]:
+    """Whole numbers and the units beyond them; in halves, as a square of units has 128 bits."""
+    whole, units = deposits.astype(np.uint64) >> BITS, deposits.astype(np.uint64) & MASK
+    rest = 2 * whole * units + (units * units >> BITS)
+    return (whole * whole + (rest >> BITS)).astype(np.int64), (rest & MASK).astype(np.int64)
