@@ -23,6 +23,7 @@ from simmpp.engine.arrays.records import (
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
+    leaves,
     misses,
     pes,
     rays,
@@ -42,6 +43,7 @@ from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_rea
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
 from simmpp.engine.pe.talking import get_on, rest, wake
+from simmpp.engine.pe.tallies import leave
 from simmpp.engine.record.counters import note_finished, note_held, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -198,6 +200,8 @@ def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
         tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
     s.tests += 1
     r = rays(s)[ray]
+    if s.leaves_n > 0 and leaves(s)[itinerary_offsets(s)[ray] + r.tested] == 1:
+        leave(s, me, ray, obj)
     r.tested += 1
     if r.granted or s.keeps:
         goes_on = r.granted != 0 and _needs_again(s, ray, obj)
