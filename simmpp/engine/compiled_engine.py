@@ -16,10 +16,11 @@ from simmpp.engine.event_heap import (
     HEAD,
     INSTANT,
     PE_BITS,
+    close,
     heap_lacks_room,
-    pop,
     push,
     replace_first,
+    take,
 )
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
@@ -116,7 +117,7 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         if rank >= HEAD:
             move_first(s)
             continue
-        pop(s)
+        take(s)
         if message != NONE:
             _arrive(s, message, time_ps)
         elif number != processes(s)[rank - INSTANT].instants:
@@ -125,6 +126,7 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
             _step(s, rank - INSTANT, time_ps)
         else:
             _serve(s, rank - INSTANT - s.processors, time_ps)
+        close(s)
     return PAUSED
 
 
@@ -188,11 +190,11 @@ def _serve(s: Run, me: int, now_ps: int) -> None:
 @kernel
 def _go_on(s: Run, me: int, next_ps: int) -> None:
     """What a PE or thread has sent travels; its next instant comes, or it sleeps."""
-    if s.n_sent > 0:
-        _carry(s)
     processes(s)[me].asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
     if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
+    if s.n_sent > 0:
+        _carry(s)
 
 
 @kernel

@@ -131,11 +131,12 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     tests, done, last = 0, s.rays_done, NONE
     while tests < s.quantum and has_ready(s, me):
         ray = next_ready(s, me)
-        first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
-        while first + rays(s)[ray].tested < end:
-            obj = itinerary_objects(s)[first + rays(s)[ray].tested]
+        r = rays(s)[ray]
+        at, end = itinerary_offsets(s)[ray] + r.tested, itinerary_offsets(s)[ray + 1]
+        while at < end:
+            obj = itinerary_objects(s)[at]
             # What a ray was granted may have left the transient memory again: it is pinned for it.
-            if rays(s)[ray].granted == 0 and not is_in_memory(s, me, obj):
+            if r.granted == 0 and not is_in_memory(s, me, obj):
                 pop_ready(s, me)
                 file_ray(s, me, ray, obj)
                 break
@@ -146,12 +147,12 @@ def compute(s: Run, me: int, now_ps: int) -> int:
                 break
             cost_ps += test_ps(s)[obj]
             _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
-            tests += 1
+            tests, at = tests + 1, at + 1
         else:
             cost_ps += s.ray_ps
             pop_ready(s, me)
             finish_ray(s, me, ray, begin_ps + paced_ps(cost_ps, pace))
-            rays(s)[ray].next, last = last, ray
+            r.next, last = last, ray
     took_ps = took(s, me, cost_ps, tests, s.rays_done - done, pace)
     return _end_go(s, me, now_ps, took_ps, tests, s.rays_done - done, last)
 
