@@ -148,7 +148,8 @@ def _pick(rng: np.random.Generator, values: Sequence[Any]) -> Any:
 
 
 def with_other_rays(rng: np.random.Generator, workload: Workload) -> Workload:
-    """The same rays with rounds, homes, weights, scaled tests and results, each of them or not."""
+    """The same rays with rounds, homes, weights, scaled tests, results and deposits, each of them
+    or not."""
     n, n0, n_objects = workload.n_rays, workload.n_primaries, workload.n_objects
     _, rounds = np.unique(rng.integers(0, int(_pick(rng, (1, 2, 5))), n0), return_inverse=True)
     drawn: dict[str, Any] = {
@@ -157,6 +158,7 @@ def with_other_rays(rng: np.random.Generator, workload: Workload) -> Workload:
         "root_weights": rng.integers(0, 8, n0) / 4,
         "ray_test_scales": rng.integers(0, 4, n).astype(np.uint8),
         "object_results": rng.integers(0, 4000, n_objects),
+        "test_deposits": rng.integers(0, 3, workload.n_tests) << 31,
     }
     nothing = {"root_homes": -1, "root_weights": 1}
     used = {
@@ -165,6 +167,21 @@ def with_other_rays(rng: np.random.Generator, workload: Workload) -> Workload:
         if rng.random() < 0.6 and (array != nothing.get(name, 0)).any()
     }
     return replace(workload, **used)
+
+
+def with_repeats(rng: np.random.Generator, workload: Workload) -> Workload:
+    """The same rays, some of whose tests are made again at once, or after others."""
+    offsets, objects = workload.itinerary_offsets.tolist(), workload.itinerary_objects
+    itineraries = [objects[i:j] for i, j in pairwise(offsets)]
+    longer = [
+        np.concatenate([np.repeat(one, rng.integers(1, 4, len(one))), one[: rng.integers(0, 3)]])
+        for one in itineraries
+    ]
+    return replace(
+        workload,
+        itinerary_offsets=np.cumsum([0, *map(len, longer)]).astype(np.int64),
+        itinerary_objects=np.concatenate([*longer, np.zeros(0)]).astype(np.int32),
+    )
 
 
 def _children(rng: np.random.Generator, depth: int) -> list[int]:
@@ -383,6 +400,18 @@ def random_case(seed: int) -> Case:
     machine = with_costs_of_today(on_some_network(machine, seed), seed)
     placement = on_islands(placement, _some_islands(machine.processors, seed))
     return Case(workload, machine, placement, random_policy(rng), order)
+
+
+def some_stealing(case: Case, seed: int) -> Case:
+    """The case where, in every third of them, PEs steal; draws from a stream of its own."""
+    steal = _pick(np.random.default_rng((seed, 20)), ("none", "none", "half"))
+    return replace(case, policy=replace(case.policy, steal=steal))
+
+
+def stealing_case(seed: int) -> Case:
+    """The random case of a seed, where PEs steal."""
+    case = random_case(seed)
+    return replace(case, policy=replace(case.policy, steal="half"))
 
 
 def _some_islands(processors: int, seed: int) -> int:

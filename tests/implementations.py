@@ -26,7 +26,7 @@ def run(implementation: str, case: Case) -> Outcome:
         )
     else:
         outcome = outcome_of(result_of(implementation, case))
-    if case.policy.rules.idle:  # what it sends belongs to no activity; slices say it all
+    if case.policy.rests:  # what it sends belongs to no activity; slices say it all
         outcome.activities = []
     return outcome
 
@@ -70,6 +70,7 @@ def outcome_of(result: Result) -> Outcome:
         rays_sent=result.rays_sent,
         user_messages=result.user_messages,
         user_dropped=result.user_dropped,
+        steal_messages=result.steal_messages,
         parts_by_kind=result.parts_by_kind,
         compute_ps=result.compute_ps.tolist(),
         communication_ps=result.communication_ps.tolist(),

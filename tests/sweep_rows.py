@@ -9,6 +9,7 @@ from typing import Any
 
 from simmpp.common.files import Row, write_csv
 from simmpp.engine.memory_use import COLUMNS as BOUNDS
+from simmpp.engine.memory_use import REASON
 from simmpp.methods.columns import NUMBERS, result_columns
 from simmpp.run.rows import RESULTS, in_order
 
@@ -24,7 +25,8 @@ PEAKS = {
         ("peak_resident", "peak_fetched", "peak_ray_queue", "peak_receive"), start=1
     )
 }
-UNFIT: Row = dict.fromkeys((*NUMBERS, *BOUNDS), "") | {"fits": 0, "exceeds_bytes": 3 * 10**9}
+LACKS = {"fits": 0, "exceeds_bytes": 3 * 10**9, "least_bytes": 7 * 10**9}
+UNFIT: Row = dict.fromkeys((*NUMBERS, *BOUNDS), "") | LACKS
 """What a policy that does not fit has for numbers."""
 
 
@@ -69,7 +71,8 @@ def failed(policy: str = "object", seed: int = 0, **cells: Any) -> Row:
 
 def bounded(policy: str, makespan_ps: int | None, capacity: str, **cells: Any) -> Row:
     """A row with a capacity; without a makespan of what lacks 3 GB."""
-    made = row(policy, fraction=0.1, **{"memory.capacity": capacity}) | dict.fromkeys(BOUNDS, "")
+    made = row(policy, fraction=0.1, **{"memory.capacity": capacity})
+    made |= dict.fromkeys((*BOUNDS, REASON), "")
     if capacity != "null":
         made |= dict.fromkeys(BOUNDS, 0) | {"fits": 1} | PEAKS
     return made | ({"makespan_ps": makespan_ps} if makespan_ps else UNFIT) | cells

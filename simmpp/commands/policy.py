@@ -95,5 +95,5 @@ def _numbers(name: str) -> str:
     named: dict[str, object] = {count: getattr(defaults, count) for count in numbers_read(policy)}
     if "min_load" in named:
         named["min_load"] = f"{float(defaults.min_load):.0%}"
-    values = {**named, **policy.parameters}
+    values = {**named, **policy.parameters, "steal": defaults.steal}
     return ", ".join(f"{key} {value}" for key, value in values.items())

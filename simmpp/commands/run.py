@@ -42,8 +42,7 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
-from simmpp.workload.sources import scene_of
-from simmpp.workload.trace.verify import verify
+from simmpp.workload.sources import require_drawn
 
 
 @click.command(
@@ -137,7 +136,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     """Trace, place, simulate, print; what is finished is written even when interrupted."""
     refuse_models(config)
     if looks.picture or verify:
-        scene_of(config.ray_source, "--picture" if looks.picture else "--verify")
+        require_drawn(config.ray_source, "--picture" if looks.picture else "--verify")
     point = make_point(config, workload(config, simulating=True))
     require_fitting(point)
     if looks.picture:
@@ -233,15 +232,15 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    scene, failed = scene_of(point.config.ray_source, "--verify")(), False
+    source, failed = point.config.ray_source, False
     nothing = np.zeros(0, np.int32)
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
         with at_work(f"verifying {run.parameters.title}"):
-            problem = verify(scene, point.config.picture, point.workload, rays, objects)
+            problem = source.verify(point.config.picture, point.workload, rays, objects)
         verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem is not None
+        failed = failed or problem != ""
     if failed:
         sys.exit(FAILED)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 TRACER = "simmpp.workload.trace.tracer"
+RADIOSITY = "simmpp.workload.radiosity.tracing"
 CANDIDATES = "simmpp.workload.trace.itineraries"
 PLACEMENT = "simmpp.placement.place"
 METHODS = "simmpp.methods.table"
@@ -16,6 +17,6 @@ SERVED = "SIMMPP_SERVED"
 """What PRELOAD reads: the variable of the environment with the process that it is imported for."""
 
 NAMED_MODULES = (
-    *(TRACER, CANDIDATES, PLACEMENT, METHODS, ENGINE),
+    *(TRACER, RADIOSITY, CANDIDATES, PLACEMENT, METHODS, ENGINE),
     *(PRELOAD, PANELS, PICTURES, NOTEBOOK, COMPLETION),
 )

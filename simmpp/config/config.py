@@ -31,9 +31,13 @@ from simmpp.machine.presets import machine as machine_of
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, island_of
 from simmpp.workload.exchange.columns import is_workload
+from simmpp.workload.particles.settings import Particles
+from simmpp.workload.particles.source import ParticleSource
 from simmpp.workload.picture import Picture
+from simmpp.workload.radiosity.source import RadiositySource
 from simmpp.workload.ray_source import RaySource
 from simmpp.workload.scene_settings import FILES
+from simmpp.workload.sources import scene_of
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,12 @@ class Config:
     @property
     def ray_source(self) -> RaySource:
         """Where the rays come from."""
-        return self.settings.scene.within(self.folder).source
+        scene, radiosity = self.settings.scene.within(self.folder), self.settings.radiosity
+        if radiosity is not None:
+            return RadiositySource(scene_of(scene.source, "radiosity"), radiosity)
+        if scene.cells is not None:
+            return ParticleSource(scene.cells, self.settings.particles or Particles())
+        return scene.source
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -97,6 +106,11 @@ class Config:
     def picture(self) -> Picture:
         """What is traced."""
         return self.settings.picture
+
+    @property
+    def asked(self) -> object:
+        """What is made of the scene: settings that tell its rays from others."""
+        return self.settings.radiosity or self.settings.particles or self.settings.picture
 
     @property
     def preset(self) -> str:

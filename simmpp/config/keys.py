@@ -102,7 +102,7 @@ def _written(name: str, expected: Expect, value: Any) -> str:
         text = part == MACHINE and preset.text(key, expected.write)
         return f"{text} ({DEFAULT_PRESET})" if text else "none"
     if isinstance(value, Fraction):
-        return f"{float(value):.0%}"
+        return f"{100 * float(value):g}%"
     if isinstance(value, bool):
         return str(value).lower()
     return str(list(value)) if isinstance(value, tuple) else expected.write(value)

@@ -12,7 +12,7 @@ from simmpp.config.settings import long_policies
 from simmpp.machine.machine import TORUS
 from simmpp.machine.torus import across, default_shape, rounder
 from simmpp.policy.parameters import PolicyParameters
-from simmpp.policy.reads import knows_loads, numbers_read
+from simmpp.policy.reads import numbers_read
 
 POLICY = "policy"
 
@@ -114,5 +114,5 @@ def _not_read(policy: PolicyParameters) -> set[str]:
     """The keys of numbers that decide nothing of what a policy does."""
     rules = policy.rules
     keys = {"min_load", "batch", "ask_at_least"} - set(numbers_read(rules))
-    keys |= set() if knows_loads(rules) else {"load_info"}
+    keys |= set() if policy.knows_loads else {"load_info"}
     return keys | (set() if rules.asks else {"merge_requests"})

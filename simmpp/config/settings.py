@@ -37,7 +37,9 @@ from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.placement import Memory, PlacementRules
 from simmpp.policy.parameters import NAME, POLICIES, PolicyParameters
 from simmpp.policy.policy import Policy
+from simmpp.workload.particles.settings import Particles
 from simmpp.workload.picture import Picture
+from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.sources import SceneKey
 
 _AXES = "a mapping of keys to lists, such as {memory.fraction: [0.1, 0.5, 1]}"
@@ -88,6 +90,9 @@ DEFAULT_READING = "mixed"
 _READING = "a reading of the package such as plain, or a file such as readings/own.yaml"
 ReadingName = Annotated[str, *only(is_line, Expect(_READING, {"type": "string", "minLength": 1}))]
 _FILE = "a file such as ours.yaml"
+_TRACED = "a scene that is traced"
+ASKED = {"picture": _TRACED, "radiosity": _TRACED, "particles": "scene.cells"}
+"""Keys of which each says what rays are for, and with what it goes."""
 FileName = Annotated[str, *only(is_line, Expect(_FILE, {"type": "string", "minLength": 1}))]
 Tolerance = Annotated[Fraction | None, parsed_by(_tolerance), Expect(_TOLERANCE, _SHARE)]
 
@@ -158,6 +163,10 @@ class Settings(Strict):
     takes the paper to mean (see `simmpp reading NAME`)."""
     picture: Picture = Picture()
     """Rays that are traced."""
+    radiosity: Radiosity | None = None
+    """Light between patches of the scene, in place of a picture."""
+    particles: Particles | None = None
+    """Particles through the cells of `scene.cells`, in place of a picture."""
     machine: MachineSettings = MachineSettings()
     """What computes it."""
     processors: Annotated[int, *integer(1, MOST_PROCESSORS, "PEs")] = 64
@@ -193,9 +202,14 @@ class Settings(Strict):
     """Tolerances of `simmpp check` against its baseline."""
 
     @model_validator(mode="after")
-    def _picture_is_traced(self) -> Settings:
-        if self.scene.source.has_own_picture and "picture" in self.model_fields_set:
-            raise mistake("picture goes with a scene that is traced, not with scene.workload")
+    def _one_thing_is_asked(self) -> Settings:
+        given = [key for key in ASKED if key in self.model_fields_set]
+        kind, asks = self.scene.kind
+        for key in given:
+            if key not in asks:
+                raise mistake(f"{key} goes with {ASKED[key]}, not with scene.{kind}")
+        if len(given) > 1:
+            raise mistake(f"expected one of {', '.join(ASKED)}, got {' and '.join(given)}")
         return self
 
     @model_validator(mode="after")

@@ -57,6 +57,7 @@ def memory_use(state: State, bounds: Capacity | None, needs: Needs | None) -> Me
         stalled_ask_ps=asks_ps,
         credit_messages=int(rooms["credit_messages"].sum()) - _late(state),
         escapes=int(rooms["escapes"].sum()),
+        least_bytes=needs.least_bytes,
         fits=int(capacity >= max(needs.least_bytes, held)),
         exceeds_bytes=max(0, held - capacity),
         infeasible=int(bool(state.infeasible)),

@@ -112,10 +112,8 @@ def require_room(
     bounds, nb = placement.capacity, placement.island
     if bounds is None:
         return None
-    if policy.rules.asks and not policy.merge_requests:
-        raise ConfigError("memory.capacity: expected merge_requests: true beside it")
-    if machine.service != POLLED:
-        raise ConfigError(f"memory.capacity: expected machine.service {POLLED} beside it")
+    if problem := clash(machine, policy):
+        raise ConfigError(f"memory.capacity: {problem}")
     needs, scene = needs_of(workload, machine, placement, policy), int(workload.object_bytes.sum())
     if fits(needs, placement, scene):
         return needs
@@ -125,6 +123,15 @@ def require_room(
         problem += f", which is less on {counted(nb, 'PE')} than the scene's {format_bytes(scene)}"
     least = f"expected at least {write_bytes(needs.least_bytes)} for {policy.title}"
     raise ConfigError(f"memory.capacity: {problem}: {least}")
+
+
+def clash(machine: Machine, policy: PolicyParameters) -> str:
+    """What can't be combined with a capacity, or nothing."""
+    if policy.rules.asks and not policy.merge_requests:
+        return f"expected merge_requests: true beside it, for {policy.title}"
+    if machine.service != POLLED:
+        return f"expected machine.service {POLLED} beside it, got {machine.service}"
+    return ""
 
 
 def fits(needs: Needs, placement: Placement, scene_bytes: int) -> bool:

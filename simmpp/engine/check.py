@@ -16,7 +16,7 @@ from simmpp.machine.torus import CONTENTIONS
 from simmpp.machine.uneven import check_unlike
 from simmpp.placement.placement import Placement
 from simmpp.workload.check import is_cut
-from simmpp.workload.workload import Workload
+from simmpp.workload.workload import MOST_TEST_SCALE, Workload
 
 
 def check_fit(workload: Workload, machine: Machine, placement: Placement) -> None:
@@ -38,12 +38,14 @@ def _check_workload(workload: Workload) -> None:
         "object_bytes": len(workload.object_bytes) == n_objects,
         "object_triangles": len(workload.object_triangles) == n_objects,
         "object_test_ps": len(workload.object_test_ps) in (0, n_objects),
+        "ray_test_scales": len(workload.ray_test_scales) in (0, n)
+        and int(workload.ray_test_scales.max(initial=0)) <= MOST_TEST_SCALE,
     }
     for name, does in fits.items():
         if not does:
             raise WorkloadError(f"{name} does not fit the rays and objects", where=workload.name)
 
-    for name in ("root_rounds", "root_homes", "ray_test_scales", "object_results"):
+    for name in ("root_rounds", "object_results"):
         if len(getattr(workload, name)):
             problem = f"{name} are recorded, but no engine simulates them yet"
             raise WorkloadError(problem, where=workload.name)

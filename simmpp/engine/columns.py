@@ -26,5 +26,7 @@ PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_byt
 """Further ones, in rows of sweeps in which a policy packs."""
 USER_COLUMNS = ("user_messages", "user_dropped")
 """Likewise, in which a policy sends messages of its own."""
+STEAL_COLUMNS = ("steal_messages",)
+"""Likewise, in which PEs steal pixels."""
 UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")
 """Likewise, with a machine on which computing is uneven."""

@@ -72,7 +72,8 @@ class CompiledRun:
     def _needs_no_events(self) -> bool:
         """Was nothing remote, so that the run is at its end without any event?"""
         records = ("logs", "record_tests", "record_counters", "record_ends", "measures", "uneven")
-        talks = self.state["idle"] != 0  # PEs that have nothing to do may have something to say
+        # PEs that have nothing to do may have something to say.
+        talks = self.state["idle"] != 0 or self.state["steals"] != 0
         if talks or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:

@@ -43,7 +43,7 @@ from simmpp.placement.placement import Placement
 from simmpp.policy.hooks import address_of
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.policy import Hook, Policy
-from simmpp.policy.reads import groups_read, knows_loads, reads
+from simmpp.policy.reads import groups_read, reads
 from simmpp.policy.record import VIEW
 from simmpp.policy.view import NUMBERS
 from simmpp.workload.workload import Workload
@@ -105,7 +105,8 @@ def _sizes(
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
     known = nb * placement.island
-    pairs = known if parameters.rules.talks else min(known, 2 * workload.n_tests * each)
+    talks = parameters.rules.talks or parameters.steals
+    pairs = known if talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
         objects=n_objects,
@@ -115,6 +116,7 @@ def _sizes(
         sent=sent,
         messages=min(sent, n_objects + 2 * nb + 1),
         talks=parameters.rules.talks,
+        steals=parameters.steals,
         tested=workload.n_tests if recording.tests else 0,
         ended=n_rays if recording.ends else 0,
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
@@ -141,6 +143,7 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "child_offsets": workload.child_offsets,
         "object_bytes": workload.object_bytes,
         "test_ps": machine.test.of_objects(workload),
+        "test_scales": workload.ray_test_scales,
         "owners": placement.owners,
         "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),
@@ -202,7 +205,7 @@ def _of_the_policy(
 ) -> dict[str, int]:
     policy = parameters.rules
     load_info, refresh_ps = LOAD_INFO[parameters.load_info], parameters.refresh_ps
-    listens = knows_loads(policy) and load_info == PIGGYBACK
+    listens = parameters.knows_loads and load_info == PIGGYBACK
     names = tuple(policy.parameters)
 
     def count(of: int | str) -> int:
@@ -221,6 +224,7 @@ def _of_the_policy(
         "heard": address_of(policy.heard, names),
         "idle": address_of(policy.idle, names),
         "talks": policy.talks,
+        "steals": parameters.steals,
         "send_from": count(policy.batch),
         "ask_from": count(policy.ask_at_least),
         "send_reads": groups_read(policy.send),
@@ -247,6 +251,7 @@ def _deal(state: State, placement: Placement) -> None:
     pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
+    pes["spell"] = 1
     pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
     for name in ("n_ready", "load", "settled_load", "sampled_load", "peak_rays"):
         pes[name] = n_pixels

@@ -22,9 +22,9 @@ from simmpp.engine.arrays.views import (
     pes,
     pixels,
     rays,
-    test_ps,
 )
 from simmpp.engine.pe.misses import is_in_memory
+from simmpp.engine.pe.pace import cost_of_test_ps
 from simmpp.engine.pe.step import step
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 
@@ -109,7 +109,7 @@ def _add_ray(
         obj = objects[i]
         if not is_in_memory(s, me, obj):
             return False
-        cost_ps += test_ps(s)[obj]
+        cost_ps += cost_of_test_ps(s, ray, obj)
     for child in range(child_offsets(s)[ray], child_offsets(s)[ray + 1]):
         roots[child] = pixel
     if ray == pixel or not s.depth_first:

@@ -10,7 +10,7 @@ from simmpp.common.documented import documented
 @documented
 @dataclass(frozen=True)
 class MemoryUse:
-    """Bytes are of one PE, times are summed over PEs; ``reason`` is no column."""
+    """Bytes are of one PE, times are summed over PEs."""
 
     peak_resident: int
     """Of the PE that ever held most, at that instant: bytes of resident objects,"""
@@ -32,6 +32,8 @@ class MemoryUse:
     """Messages of nothing but credit; they count as loads as well."""
     escapes: int
     """Objects asked for because nothing else could be done."""
+    least_bytes: int
+    """The least capacity with which the policy runs (with ``flow: credits``)."""
     fits: int
     """1 if the capacity is enough: for what is needed at least and, with ``flow: none``, for all
     that was held."""
@@ -41,8 +43,9 @@ class MemoryUse:
     infeasible: int
     """1 if the run could not be brought to its end."""
     reason: str = ""
-    """Why not, or why it was not begun."""
+    """Why not."""
 
 
-COLUMNS = tuple(field.name for field in fields(MemoryUse) if field.name != "reason")
-"""Further columns of sweeps in which a PE's memory has a capacity."""
+REASON = "reason"
+COLUMNS = tuple(field.name for field in fields(MemoryUse) if field.name != REASON)
+"""Further columns of integers, of sweeps in which a PE's memory has a capacity."""

@@ -72,6 +72,8 @@ class Result(Displayed):
     """Messages of the policy's own that were sent."""
     user_dropped: int = 0
     """Further ones that were not: too many, or to nobody."""
+    steal_messages: int = 0
+    """Questions for pixels and answers to them."""
     launch_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(nb,) int64: of compute_ps, startups of computing, and what lanes left empty add."""
     work_ps: int = 0
@@ -109,7 +111,7 @@ class Result(Displayed):
     @property
     def messages(self) -> int:
         """Messages sent, of all kinds."""
-        return sum(self.messages_by_kind) + self.user_messages
+        return sum(self.messages_by_kind) + self.user_messages + self.steal_messages
 
     @property
     def parts(self) -> int:
@@ -186,7 +188,7 @@ def concluded(
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
     work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
-    (*sent, user_messages), bytes_sent = state.sent_until(makespan_ps)
+    (*sent, user_messages, steal_messages), bytes_sent = state.sent_until(makespan_ps)
     sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
@@ -212,6 +214,7 @@ def concluded(
         events=state["activities"] + arrivals,
         user_messages=user_messages,
         user_dropped=state["user_dropped"],
+        steal_messages=steal_messages,
         launch_ps=state.pes["launch_ps"].copy(),
         work_ps=work_ps,
         bound_ps=bound_of(work_ps, machine.speed, machine.processors),

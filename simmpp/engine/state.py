@@ -108,18 +108,17 @@ class State:
             self.runs["n_logged"] = hand_on(self._logged(), end_ps, self.log)
             hand_on_last(self._logged(), end_ps, self.log)
 
-    def sent_until(self, end_ps: int) -> tuple[tuple[int, int, int, int, int], int]:
+    def sent_until(self, end_ps: int) -> tuple[tuple[int, ...], int]:
         """Messages by kind and bytes that had departed then.
 
-        Only loads and messages of the policy's own can be later.
+        Only loads, messages of the policy's own and those for pixels can be later.
         """
         used = self.messages[: self.arrays["message_marks"][USED]]
         late = used[(used["kind"] != NONE) & (used["depart_ps"] > end_ps)]
         counts = np.bincount(late["kind"], minlength=len(MESSAGE_KINDS))
         by_kind = self.arrays["sent_by_kind"] - counts
         late_bytes = int(late["payload_bytes"].sum()) + self["header_bytes"] * len(late)
-        requests, objects, rays, loads, own = by_kind.tolist()
-        return (requests, objects, rays, loads, own), self["bytes_sent"] - late_bytes
+        return tuple(by_kind.tolist()), self["bytes_sent"] - late_bytes
 
     def counters(self) -> Counters:
         """What was counted; the run must be over."""

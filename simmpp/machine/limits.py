@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import floor
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simmpp.common.errors import ConfigError
 from simmpp.machine.machine import Machine
@@ -26,12 +27,26 @@ def total_compute_ps(workload: Workload, machine: Machine) -> int:
 
     Raises ConfigError if that is beyond the clock.
     """
-    tests = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
+    tests = _tests_of_objects(workload)
     cost_ps = machine.test.of_objects(workload, np.float64)
     # In float64 nothing wraps; once the sum is known to fit, it is made exactly.
     if float(tests @ cost_ps) + float(workload.n_rays) * machine.ray_ps >= CLOCK_LIMIT_PS:
         raise beyond_the_clock()
     return int(tests @ machine.test.of_objects(workload)) + workload.n_rays * machine.ray_ps
+
+
+def _tests_of_objects(workload: Workload) -> NDArray[np.int64]:
+    """Tests of each object, those that cost 2^k of its own counted as so many: (N,) int64."""
+    objects, n_objects, times = workload.itinerary_objects, workload.n_objects, None
+    if len(workload.ray_test_scales):
+        of_rays = 1 << workload.ray_test_scales.astype(np.int64)
+        times = np.repeat(of_rays, np.diff(workload.itinerary_offsets))
+    return np.bincount(objects, times, n_objects).astype(np.int64)  # float64 is exact to 2^53
+
+
+def _longest_test_ps(workload: Workload, machine: Machine) -> float:
+    scale = int(workload.ray_test_scales.max(initial=0))
+    return float(machine.test.of_objects(workload, np.float64).max(initial=0)) * 2.0**scale
 
 
 def bound_ps(workload: Workload, machine: Machine) -> int:
@@ -53,8 +68,9 @@ def check_counters(workload: Workload, machine: Machine) -> None:
     The engines look at the clock at every instant of a PE; here is seen to it that no single
     activity and no single flight takes half of the clock. Bounds, in Python's integers.
     """
-    longest_test_ps = float(machine.test.of_objects(workload, np.float64).max(initial=0))
-    most_ps = workload.n_tests * longest_test_ps + workload.n_rays * machine.ray_ps
+    most_ps = (
+        workload.n_tests * _longest_test_ps(workload, machine) + workload.n_rays * machine.ray_ps
+    )
     if most_ps >= CLOCK_LIMIT_PS:
         total_compute_ps(workload, machine)  # looks closer
     if machine.is_uneven and _longest_go_ps(workload, machine) >= CLOCK_LIMIT_PS:
@@ -74,8 +90,8 @@ def check_counters(workload: Workload, machine: Machine) -> None:
 
 def _longest_go_ps(workload: Workload, machine: Machine) -> float:
     """No go at computing takes longer: all of it, on the slowest PE, with lanes left empty."""
-    test_ps = machine.test.of_objects(workload, np.float64).max(initial=0)
-    cost_ps = total_compute_ps(workload, machine) + machine.least_tests * float(test_ps)
+    test_ps = _longest_test_ps(workload, machine)
+    cost_ps = total_compute_ps(workload, machine) + machine.least_tests * test_ps
     slowest = max(1 / min(speeds_of(machine.speed, machine.processors)), Fraction(1))
     factor = slowest * Fraction(machine.straggler.factor) * max(factors(machine.noise)) / ONE
     return machine.compute_startup_ps + cost_ps * float(factor)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-REQUEST, OBJECT, RAYS, LOAD, USER = range(5)
-MESSAGE_KINDS = ("request", "object", "rays", "load", "user")
+REQUEST, OBJECT, RAYS, LOAD, USER, STEAL = range(6)
+MESSAGE_KINDS = ("request", "object", "rays", "load", "user", "steal")
 COPIED_KINDS = MESSAGE_KINDS[:USER]
 """Those whose packing and unpacking a machine has constants for."""
 USER_COPIED_AS = REQUEST
-"""A message of a policy's own is a few words, as a request is, and costs what that does."""
+"""A message of a policy's own is a few words, as a request is, and costs what that does; so does
+one that is about stealing."""
 USER_WORDS = 4
 """Words of a message of a policy's own."""
 WORD_BYTES = 8
+STEAL_BYTES = 16
+"""Payload of an answer to a thief: whose pixels, the first, how many. Its question has none."""

@@ -18,13 +18,16 @@ BOUNDED = "bounded"
 BY_USE = {
     "packs": columns.PACKED_COLUMNS,
     "talks": columns.USER_COLUMNS,
+    "steals": columns.STEAL_COLUMNS,
     "threads": columns.SERVICE_COLUMNS,
     "is uneven": columns.UNEVEN_COLUMNS,
-    BOUNDED: memory_use.COLUMNS,
+    BOUNDED: (*memory_use.COLUMNS, memory_use.REASON),
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""
 FURTHER = tuple(name for names in BY_USE.values() for name in names)
+TEXTS = (memory_use.REASON,)
+"""Those of them that are no integers."""
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 

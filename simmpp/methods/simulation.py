@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.engine.capacity import fits, lacking, needs_of
+from simmpp.common.files import Row
+from simmpp.engine.capacity import Needs, fits, lacking, needs_of
+from simmpp.engine.memory_use import COLUMNS, REASON
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
 from simmpp.methods.columns import BOUNDED, BY_USE, FURTHER, NUMBERS
+from simmpp.placement.placement import Placement
 
 
-def simulation(case: Case) -> dict[str, int]:
-    """All integers of a run; of a policy that does not fit, no more than that and what it lacks."""
+def simulation(case: Case) -> Row:
+    """All cells of a run; of a policy that does not fit, no more than that and what it lacks."""
     placement = case.place()
     if placement.capacity is not None:
         needs = needs_of(case.workload, case.machine, placement, case.policy)
         scene_bytes = int(case.workload.object_bytes.sum())
         if not fits(needs, placement, scene_bytes):
-            return {"fits": 0, "exceeds_bytes": lacking(needs, placement, scene_bytes)}
+            return unfit_cells(needs, placement, scene_bytes)
     result = simulate(
         case.workload,
         case.machine,
@@ -29,13 +32,25 @@ def simulation(case: Case) -> dict[str, int]:
         seed=case.seed,
         progress=case.tick,
     )
-    return integers(result)
+    return cells(result)
+
+
+def unfit_cells(needs: Needs, placement: Placement, scene_bytes: int) -> Row:
+    """What is known of a policy that does not fit."""
+    lacks = lacking(needs, placement, scene_bytes)
+    return {"fits": 0, "exceeds_bytes": lacks, "least_bytes": needs.least_bytes}
+
+
+def cells(result: Result) -> Row:
+    """The integers of a result and, if it came to no end, why not."""
+    reason = result.memory.reason if result.memory else ""
+    return {**integers(result), **({REASON: reason} if reason else {})}
 
 
 def integers(result: Result) -> dict[str, int]:
     """The integers of a result, by column; a run that came to no end has no others but memory's."""
     use = result.memory
-    of_memory = {} if use is None else {name: getattr(use, name) for name in BY_USE[BOUNDED]}
+    of_memory = {} if use is None else {name: getattr(use, name) for name in COLUMNS}
     if use is not None and use.infeasible:
         return of_memory
     names = [name for name in (*NUMBERS, *FURTHER) if name not in BY_USE[BOUNDED]]

@@ -6,7 +6,7 @@ its name, sweeps have its rows, and ``simmpp bench`` measures its run time and i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from simmpp.methods.analytical import analytical, analytical_measured
@@ -17,9 +17,9 @@ from simmpp.model.synchronous import DATAFLOWS
 
 @dataclass(frozen=True)
 class Method:
-    """A way from a case to the integers of its row."""
+    """A way from a case to the cells of its row."""
 
-    numbers: Callable[[Case], dict[str, int]]
+    numbers: Callable[[Case], Mapping[str, int | str]]
     """Columns of ``results.csv``; those that it does not know are left out."""
     policies: tuple[str, ...] | None = None
     """Names of those that it knows; None for all."""

@@ -70,7 +70,7 @@ def costs_of(machine: Machine, workload: Workload) -> Costs:
     Raises ConfigError off the torus, where the paper has one cost for a message to any PE, and
     where computing is uneven.
     """
-    require_known(machine)
+    require_known(machine, workload)
     uses = np.bincount(workload.itinerary_objects, minlength=workload.n_objects)
     n_tests = max(int(uses.sum()), 1)
     object_bytes = float(uses @ workload.object_bytes.astype(np.float64)) / n_tests

@@ -64,7 +64,7 @@ def synchronous(
     Raises ConfigError for more than MOST_PROCESSORS, off the torus, for islands, or if tests and
     messages may exceed the clock.
     """
-    require_known(machine)
+    require_known(machine, workload)
     if placement.islands > 1:
         raise ConfigError("the formulas know no islands: expected placement.islands 1")
     _check_processors(machine.processors)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 from simmpp.common.randomness import generator
 from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
+from simmpp.placement.homes import home_starts, spread
 from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
-from simmpp.placement.placement import Memory, Placement, PlacementRules, island_of
+from simmpp.placement.placement import OF_HOMES, Memory, Placement, PlacementRules, island_of
 from simmpp.placement.residents import Deal, as_csr, kept_count, replicas, resident_count
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
@@ -31,11 +33,10 @@ def place(
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
     island = island_of(rules, processors)
-    starts_on = _starts(rules, workload, processors, seed)
-    owner_of = _owners(rules, workload, starts_on, island, seed)
+    starts_on, owner_of = _dealt(rules, workload, processors, island, seed)
     deal = Deal(workload, owner_of, starts_on, processors, island)
     offsets, objects = replicas(deal, memory, seed)
-    return Placement(
+    placement = Placement(
         processors=processors,
         owners=owner_of,
         replica_offsets=offsets,
@@ -46,6 +47,24 @@ def place(
         islands=rules.islands,
         capacity=memory.bounds,
     )
+    return _spread(rules, workload, placement)
+
+
+def _spread(rules: PlacementRules, workload: Workload, placement: Placement) -> Placement:
+    if rules.pixels != "home_spread":
+        return placement
+    return replace(placement, pixel_pes=spread(workload, placement))
+
+
+def _dealt(
+    rules: PlacementRules, workload: Workload, processors: int, island: int, seed: int
+) -> tuple[Ids, Ids]:
+    """Where each primary ray starts, and who owns each object: one may follow from the other."""
+    if rules.pixels in OF_HOMES:
+        owner_of = owners(rules.owners, workload.object_centroids, island, seed)
+        return home_starts(workload, owner_of, processors, island), owner_of
+    starts_on = _starts(rules, workload, processors, seed)
+    return starts_on, _owners(rules, workload, starts_on, island, seed)
 
 
 def _starts(rules: PlacementRules, workload: Workload, processors: int, seed: int) -> Ids:
@@ -90,16 +109,16 @@ def rotated(
     Source: systematic sampling (Cochran 1977, Sampling Techniques, chapter 8), along a sweep.
     """
     n_objects = workload.n_objects
-    starts_on = _starts(rules, workload, processors, seed)
     island = island_of(rules, processors)
-    owner_of = _owners(rules, workload, starts_on, island, seed)
+    starts_on, owner_of = _dealt(rules, workload, processors, island, seed)
     counts = [resident_count(fraction, n_objects) for fraction in fractions]
     circles = (_circle(owner_of, island, pe, seed) for pe in range(processors))
     held = [_turns(circle, owner_of, counts) for circle in circles]
-    return [
+    placements = [
         Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on, islands=rules.islands)
         for of_fraction in zip(*held, strict=True)
     ]
+    return [_spread(rules, workload, placement) for placement in placements]
 
 
 def _circle(owner_of: Ids, island: int, pe: int, seed: int) -> Ids:

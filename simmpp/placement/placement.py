@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,12 @@ from pydantic import (
 from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import Share, Size
-from simmpp.common.strict import Expect, declared, integer, mistake, parsed_by
-from simmpp.common.units import shown
-from simmpp.common.validate import MOST_COUNT, require_whole
+from simmpp.common.strict import declared, integer, mistake
+from simmpp.common.validate import MOST_COUNT
+from simmpp.placement.dealing import OF_HOMES as OF_HOMES
+from simmpp.placement.dealing import Cells as Cells
+from simmpp.placement.dealing import PixelRule
+from simmpp.placement.dealing import Pixels as Pixels
 from simmpp.placement.rooms import (
     AS_FRACTION,
     OF_A_CAPACITY,
@@ -43,43 +46,6 @@ def cut(n: int, parts: int) -> NDArray[np.int32]:
 
 Owners = Literal["bisection", "morton", "round_robin", "random", "used"]
 Residents = Literal["random", "nearest", "hot", "used"]
-Pixels = Literal["blocks", "rows", "tiles", "interleaved", "random"]
-
-
-@documented
-@dataclass(frozen=True)
-class Cells:
-    """Pixels in squares, of that many along each side, which are dealt out in turn."""
-
-    cells: int
-    """Pixels along each side of a square."""
-
-    def __post_init__(self) -> None:
-        require_whole("cells", self.cells, 1, MOST_COUNT)
-
-
-# --- what users write for pixels ---
-
-_PIXELS = f"{', '.join(get_args(Pixels))} or {{cells: 8}}"
-_CELLS_SCHEMA = {
-    "type": "object",
-    "properties": {"cells": {"type": "integer", "minimum": 1, "maximum": MOST_COUNT}},
-    "required": ["cells"],
-    "additionalProperties": False,
-}
-_PIXELS_SCHEMA = {"anyOf": [{"enum": list(get_args(Pixels))}, _CELLS_SCHEMA]}
-
-
-def _pixels(value: object) -> object:
-    """One of the words, or ``{cells: 8}``."""
-    if isinstance(value, dict) and set(value) == {"cells"}:
-        return Cells(value["cells"])
-    if isinstance(value, Cells) or (isinstance(value, str) and value in get_args(Pixels)):
-        return value
-    raise ConfigError(f"value {shown(value)}: expected {_PIXELS}")
-
-
-PixelRule = Annotated[Pixels | Cells, parsed_by(_pixels), Expect(_PIXELS, _PIXELS_SCHEMA)]
 
 
 @declared
@@ -189,10 +155,18 @@ class PlacementRules:
     coarse pre-pass."""
     pixels: PixelRule = "blocks"
     """How pixels are dealt to the PEs that start them. In turn: pixels (interleaved), rows, or
-    squares of so many pixels along each side (cells)."""
+    squares of so many pixels along each side (cells). Rays of tables that have a home: with its
+    owner (home), or those beyond n0 / nb in turn where it is resident as well (home_spread)."""
     islands: Annotated[int, *integer(1, MOST_COUNT)] = 1
     """Equal parts of the machine, PEs in a row, that own the whole scene each and send one another
     nothing; pixels are dealt over all PEs. As many as PEs: the replicated scene."""
+
+    @model_validator(mode="after")
+    def _owners_come_first(self) -> PlacementRules:
+        if self.owners == "used" and self.pixels in OF_HOMES:
+            problem = f"pixels: {self.pixels} starts rays with the owner, and owners: used makes"
+            raise mistake(f"{problem} owners of those who start them: expected one of both")
+        return self
 
     @model_serializer(mode="wrap")
     def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:

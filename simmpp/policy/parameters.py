@@ -31,7 +31,8 @@ from simmpp.common.strict import (
 from simmpp.common.units import shown
 from simmpp.policy.file import PolicyFile, digest_of, policy_of_file
 from simmpp.policy.mistakes import unknown_like
-from simmpp.policy.policy import Packing, Policy
+from simmpp.policy.policy import Packing, Policy, Steal
+from simmpp.policy.reads import knows_loads
 from simmpp.policy.table import CEILING as CEILING
 from simmpp.policy.table import CLASSICAL as CLASSICAL
 from simmpp.policy.table import DEFAULT_POLICY as DEFAULT_POLICY
@@ -90,6 +91,10 @@ class PolicyParameters:
     """What goes to one PE at one dispatch in one message: nothing, its requests (and the answers to
     them), or all, rays with requests (the mixed dataflow of Nebel 1997)."""
 
+    steal: Steal = "none"
+    """With `half`, a PE that holds no ray asks others for pixels that they have not started, the
+    most loaded it knows of first, each once; that gives half of them, its last ones."""
+
     file: OwnPolicy = None
     """A policy of one's own in place of a `name`: a Python file with `POLICY = Policy(...)`, which
     is run (see `simmpp policy`)."""
@@ -110,6 +115,7 @@ class PolicyParameters:
             sample_ps: int | str | None = ...,
             merge_requests: bool = ...,
             packing: Packing = ...,
+            steal: Steal = ...,
             file: str | PolicyFile | Policy | None = ...,
             set: dict[str, int | str] | None = ...,
         ) -> None: ...
@@ -186,9 +192,24 @@ class PolicyParameters:
         return self.packing != "none"
 
     @property
+    def steals(self) -> bool:
+        """PEs that hold no ray ask others for pixels."""
+        return self.steal != "none"
+
+    @property
+    def rests(self) -> bool:
+        """PEs that have nothing to do may have something to say."""
+        return self.rules.idle is not None or self.steals
+
+    @property
+    def knows_loads(self) -> bool:
+        """Loads of others decide what it does."""
+        return knows_loads(self.rules) or self.steals
+
+    @property
     def uses(self) -> tuple[str, ...]:
         """What has columns of its own in a table of results, where anything makes use of it."""
-        uses = {"packs": self.packs, "talks": self.rules.talks}
+        uses = {"packs": self.packs, "talks": self.rules.talks, "steals": self.steals}
         return tuple(use for use, it_does in uses.items() if it_does)
 
     @property
@@ -203,6 +224,8 @@ class PolicyParameters:
             plain["load_info"] = {"refresh": refresh}
         if (period := plain.pop("sample_ps", None)) is not None:
             plain["load_info"] = {"sampled": NEVER if period == NEVER_PS else f"{period} ps"}
+        if not self.steals:
+            del plain["steal"]
         return {key: plain[key] for key in plain if key not in ("file", "set")} | self.own
 
     @property

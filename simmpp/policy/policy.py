@@ -23,6 +23,8 @@ Hook = Callable[[View], int]
 """What it returns says the field of Policy that holds it."""
 Packing = Literal["none", "requests", "all"]
 """What goes to one PE at one dispatch in one message: nothing, its requests, or everything."""
+Steal = Literal["none", "half"]
+"""How many of the pixels that it has not started a PE gives to one that holds no ray."""
 Candidates = Literal["owner", "holders"]
 HOOKS = ("send", "ask", "keep", "heard", "idle")
 Function = TypeVar("Function", bound=Callable[..., object])

@@ -36,11 +36,12 @@ def knows_loads(policy: Policy) -> bool:
     return policy.to_holders or reads(policy, *GROUPS[LOADS])
 
 
-def settings_used(policy: Policy) -> tuple[str, ...]:
+def settings_used(policy: Policy, *, steals: bool = False) -> tuple[str, ...]:
     """The settings that make a difference to it: those that its hooks read, or that say when these
-    are asked, and what may be packed or merged."""
+    are asked, and what may be packed or merged. Who steals goes by the loads that it knows."""
     used = [name for name in NUMBERS if name in policy.counts or reads(policy, name)]
-    used += ["load_info"] if knows_loads(policy) else []
+    used += ["load_info"] if steals or knows_loads(policy) else []
+    used += ["steal"] if steals else []
     used += ["merge_requests"] if policy.asks else []
     return (*used, *(["packing"] if len(policy.packings) > 1 else []))
 

@@ -150,9 +150,10 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
     counts = (numbers[f"{kind}_messages"] for kind in KINDS)
     each_ps = sum(n * each for n, each in zip(counts, costs.startups_ps, strict=True))
-    # One of a policy's own is sent as rays are, and copied as a request is.
+    # One of a policy's own, or for pixels, is sent as rays are, and copied as a request is.
     own_ps = costs.startups_ps[RAYS] + costs.fixed_ps[REQUEST]
-    each_ps += (numbers.get("user_messages") or 0) * own_ps
+    of_own = (numbers.get(name) or 0 for name in ("user_messages", "steal_messages"))
+    each_ps += sum(of_own) * own_ps
     startups_ps = min(total_ps, each_ps + fixed_ps)
     return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
 

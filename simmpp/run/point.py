@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from simmpp.common.places import misplaced
+from simmpp.common.units import shown, write_bytes
 from simmpp.config.config import Config
-from simmpp.engine.capacity import fits, needs_of
+from simmpp.engine.capacity import clash, fits, needs_of
 from simmpp.engine.record.log import Sink
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result
@@ -64,6 +65,8 @@ def make_point(config: Config, workload: Workload, seed: int | None = None) -> P
     refuse_models(config)
     seed = config.settings.seeds[0] if seed is None else seed
     machine = config.machine_for(config.processors)
+    for parameters, _ in policies_of(config):
+        refuse_clash(config, parameters)
     placement = place(workload, config.processors, config.memory, config.settings.placement, seed)
     return Point(config, workload, machine, placement, seed)
 
@@ -74,6 +77,16 @@ def refuse_models(config: Config) -> None:
     if method != SIMULATE:
         problem = f"value {method!r}: expected {SIMULATE} here"
         raise misplaced(("method",), problem, config.places)
+
+
+def refuse_clash(config: Config, policy: PolicyParameters) -> None:
+    """Raise ConfigError for what can't be combined with a capacity."""
+    capacity = config.memory.capacity
+    if capacity is None:
+        return
+    if problem := clash(config.machine_for(config.processors), policy):
+        value = shown(write_bytes(capacity) if isinstance(capacity, int) else capacity)
+        raise misplaced(("memory", "capacity"), f"value {value}: {problem}", config.places)
 
 
 def policies_of(config: Config) -> list[tuple[PolicyParameters, bool]]:

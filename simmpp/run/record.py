@@ -17,7 +17,7 @@ from typing import Any
 from simmpp.common.files import write_text
 from simmpp.config.config import Config, described
 from simmpp.machine.machine import THREAD, Machine
-from simmpp.methods.simulation import integers
+from simmpp.methods.simulation import cells
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.machines import MACHINE_OF, machines_told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
@@ -103,7 +103,7 @@ def _policy(point: Point, run: PolicyRun, runs: Sequence[PolicyRun]) -> dict[str
         "time_profit_against_replicated": ceiling
         and _finite(ratio(ceiling.result.makespan_ps, result.makespan_ps)),
         "message_profit": _finite(ratio(base.messages, result.messages)),
-        **integers(result),
+        **cells(result),
         "effective_fraction": row(point, run)["effective_fraction"],
         "messages_received": result.messages_received,
         "utilisation": {"min": share.min(), "mean": share.mean(), "max": share.max()},

@@ -12,13 +12,14 @@ from pathlib import Path
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
 from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns
-from simmpp.methods.simulation import integers
+from simmpp.methods.simulation import cells, unfit_cells
 from simmpp.methods.table import METHODS
 from simmpp.run.fitting import Fitting, fittings
 from simmpp.run.point import Point, PolicyRun
 
 RESULTS, PARQUET = "results.csv", "results.parquet"
 PROFITS, TIMINGS, RECORD = "profits.csv", "timings.csv", "run.json"
+KNEES = "knees.csv"
 """Files of a folder of results."""
 
 Seeds = dict[int, Row]
@@ -32,7 +33,7 @@ def point_row(
     scene: str,
     policy: str,
     seed: int,
-    numbers: Mapping[str, int],
+    numbers: Mapping[str, int | str],
     effective_fraction: float,
     error: str = "",
 ) -> Row:
@@ -56,13 +57,14 @@ def point_row(
 def row(point: Point, run: PolicyRun) -> Row:
     """The row of one policy that was run at one point."""
     effective = 1.0 if run.all_resident else point.placement.effective_fraction
-    scene, numbers = point.workload.name, integers(run.result)
+    scene, numbers = point.workload.name, cells(run.result)
     return point_row(point.config, scene, run.parameters.title, point.seed, numbers, effective)
 
 
 def unfit_row(point: Point, policy: Fitting) -> Row:
     """The row of a policy that does not fit: no more than that, and what it lacks."""
-    numbers = {"fits": 0, "exceeds_bytes": policy.lacking_bytes}
+    scene_bytes = int(point.workload.object_bytes.sum())
+    numbers = unfit_cells(policy.needs, point.placement, scene_bytes)
     effective = 1.0 if policy.parameters.rules.all_resident else point.placement.effective_fraction
     title, scene = policy.parameters.title, point.workload.name
     return point_row(point.config, scene, title, point.seed, numbers, effective)

@@ -14,7 +14,7 @@ from simmpp.policy.parameters import CLASSICAL
 from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
-from simmpp.workload.describe import primaries
+from simmpp.workload.describe import ROOTS_OF, primaries, roots
 
 Cell = Callable[[PolicyRun], str]
 
@@ -88,7 +88,9 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  objects", lambda run: f"{run.result.object_parts}"),
         ("  batches of rays", lambda run: f"{run.result.ray_parts}"),
     ]
-    packs, talks = (any(use in run.parameters.uses for run in runs) for use in ("packs", "talks"))
+    packs, talks, steals = (
+        any(use in run.parameters.uses for run in runs) for use in ("packs", "talks", "steals")
+    )
     of_its_own: list[tuple[str, Cell]] = [
         ("  of the policy's own", lambda run: f"{run.result.user_messages}"),
         ("    not sent, too many", lambda run: f"{run.result.user_dropped}"),
@@ -102,6 +104,7 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  rays", lambda run: f"{run.result.ray_messages}"),
         ("  loads", lambda run: f"{run.result.load_messages}"),
         *(of_its_own if talks else []),
+        *([("  for pixels", lambda run: f"{run.result.steal_messages}")] if steals else []),
         *(parts if packs else []),
     ]
 
@@ -171,6 +174,8 @@ def _idle_at_first(point: Point) -> list[str]:
     if not (idle := nb - len(np.unique(point.placement.pixel_pes))):
         return []
     by_rows = point.config.settings.placement.pixels == "rows"
+    if (of := roots(point.workload)) in ROOTS_OF.values():
+        return [f"{idle} of {counted(nb, 'PE')} start without any of the {of}"]
     picture = counted(rows, "row") if by_rows else f"{columns} x {rows} pixels"
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 

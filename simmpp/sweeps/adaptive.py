@@ -22,6 +22,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from simmpp.common.files import Row
 from simmpp.policy.parameters import REFERENCE
 from simmpp.sweeps.grid import Comparison
 from simmpp.sweeps.journal import Outcome, Results
@@ -151,7 +152,7 @@ class AdaptiveSampler:
     def _profits(self, group: Group) -> dict[tuple[str, str], list[float]]:
         """The values of the seeds, in their order, by policy and measure; none if one is missing,
         for what does not fit into memory has no result."""
-        of_policy: dict[str, list[dict[str, int]]] = {}
+        of_policy: dict[str, list[Row]] = {}
         for planned in group.points:
             numbers = self._results.outcomes[planned.task.key].numbers
             of_policy.setdefault(planned.point.policy.title, []).append(numbers)

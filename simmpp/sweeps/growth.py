@@ -18,7 +18,6 @@ from simmpp.config.config import Config, described
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.provenance import difference
 from simmpp.sweeps.task import canonical, constants_of, decides
-from simmpp.workload.picture import Picture
 
 GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
 """Keys of a configuration that say which points there are, and not what they are of."""
@@ -33,11 +32,11 @@ Identity = Mapping[str, Any]
 
 def meanings(
     policies: Iterable[tuple[PolicyParameters, str]],
-    rays: Iterable[tuple[str, Picture, str]],
+    rays: Iterable[tuple[str, object, str]],
     configs: Iterable[tuple[Config, str]],
     points: Iterable[Choice],
 ) -> dict[str, list[Any]]:
-    """What names stand for: of policies, of scenes (with picture and digest), of points.
+    """What names stand for: of policies, of scenes (with what is asked of them), of points.
 
     Likewise what the settings of a machine give, which depends on its preset or file, too.
     """
@@ -49,8 +48,8 @@ def meanings(
         of_name = names.setdefault(name, [])
         as_read = json.loads(json.dumps(meaning, default=str))
         of_name += [as_read] if as_read not in of_name else []
-    for scene, picture, digest in rays:
-        names.setdefault(f"rays of {scene} (picture {_short(picture)})", []).append(digest)
+    for scene, asked, digest in rays:
+        names.setdefault(f"rays of {scene} (picture {_short(asked)})", []).append(digest)
     return names
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from simmpp.common.errors import ConfigError
-from simmpp.common.files import naming
+from simmpp.common.files import Row, naming
 from simmpp.sweeps.growth import Identity, conflict, joined
 
 FILE = "points.jsonl"
@@ -28,8 +28,8 @@ class Outcome:
 
     key: str
     """The task's."""
-    numbers: dict[str, int] = field(default_factory=dict)
-    """The integers of its row by column; empty if it failed."""
+    numbers: Row = field(default_factory=dict)
+    """The cells of its row by column; empty if it failed."""
     effective_fraction: float = 0.0
     wall_s: float = 0.0
     """Placement + event loop."""

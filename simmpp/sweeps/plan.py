@@ -19,6 +19,7 @@ from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
 from simmpp.methods.columns import BOUNDED, KEYS, METHOD, result_columns
 from simmpp.methods.table import METHODS
+from simmpp.run.point import refuse_clash
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import FAILED, FINISHED, SIMULATIONS, record, recorded
 from simmpp.run.rows import in_order, point_row
@@ -84,7 +85,7 @@ class Plan:
         config = recorded(self.config).items()
         policies = dict.fromkeys((p.point.policy, _told(p.point)) for p in self.points)
         rays = dict.fromkeys(
-            (p.scene + _told(p.point), p.point.config.picture, p.task.digest) for p in self.points
+            (p.scene + _told(p.point), p.point.config.asked, p.task.digest) for p in self.points
         )
         configs = {
             id(p.point.comparison): (p.point.config, _told(p.point)) for p in self.points
@@ -152,7 +153,8 @@ def plan_of(config: Config) -> Plan:
     points: list[PlannedPoint] = []
     for point in grid(config):
         _refuse_unknown(point)
-        inputs = repr((point.config.scene_spec, point.config.picture))
+        refuse_clash(point.config, point.policy)
+        inputs = repr((point.config.scene_spec, point.config.asked))
         if inputs not in workloads:
             workloads[inputs] = point.config.ray_source.name_and_digest(point.config.picture)
         name, digest = workloads[inputs]

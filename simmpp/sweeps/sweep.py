@@ -25,7 +25,7 @@ from simmpp.policy.policy import Policy
 from simmpp.run.inputs import cache_workload
 from simmpp.run.provenance import result_versions
 from simmpp.run.record import write_record
-from simmpp.run.rows import PARQUET, PROFITS, RECORD, RESULTS, TIMINGS
+from simmpp.run.rows import KNEES, PARQUET, PROFITS, RECORD, RESULTS, TIMINGS
 from simmpp.sweeps.adaptive import AdaptiveSampler
 from simmpp.sweeps.executors import Pool, pool_for
 from simmpp.sweeps.journal import Journal, Outcome, Results
@@ -33,6 +33,7 @@ from simmpp.sweeps.plan import Plan, plan_of
 from simmpp.sweeps.profits import profit_columns, profit_rows
 from simmpp.sweeps.scheduler import outcomes
 from simmpp.sweeps.task import Task
+from simmpp.sweeps.winners.knee import knee_tables
 from simmpp.sweeps.worker import keep_workload, run_task
 
 if TYPE_CHECKING:
@@ -235,6 +236,7 @@ def tables_of(plan: Plan, results: Results) -> TablesByFile:
         RESULTS: (rows, plan.result_columns),
         PROFITS: (profits, profit_columns(keys)),
         TIMINGS: (timings, plan.timing_columns),
+        **knee_tables(rows, keys, profits),
     }
 
 
@@ -243,6 +245,8 @@ def write_tables(plan: Plan, results: Results, folder: Path) -> TablesByFile:
     tables = tables_of(plan, results)
     for name, (rows, columns) in tables.items():
         write_csv(rows, columns, folder / name)
+    if KNEES not in tables:
+        (folder / KNEES).unlink(missing_ok=True)  # of a sweep that had more values
     write_parquet(*tables[RESULTS], folder / PARQUET)
     write_record(plan.record(results.outcomes), folder / RECORD)
     return tables

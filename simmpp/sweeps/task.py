@@ -11,9 +11,9 @@ from typing import Any
 from simmpp.config.config import Config
 from simmpp.methods.table import METHODS, SIMULATE
 from simmpp.placement.place import draws
-from simmpp.placement.placement import Memory, PlacementRules
+from simmpp.placement.placement import OF_HOMES, Memory, PlacementRules
 from simmpp.policy.parameters import CEILING, PolicyParameters
-from simmpp.policy.reads import knows_loads, numbers_read, reads
+from simmpp.policy.reads import numbers_read, reads
 from simmpp.policy.view import NUMBERS
 from simmpp.sweeps.grid import GridPoint
 
@@ -39,6 +39,12 @@ class Task:
     """Seeds differ wherever objects are."""
 
 
+def _of_everything(rules: PlacementRules) -> PlacementRules:
+    """What of them matters where everything is in every memory."""
+    owners = rules.owners if rules.pixels in OF_HOMES else PlacementRules().owners
+    return PlacementRules(owners=owners, pixels=rules.pixels)
+
+
 def task_of(point: GridPoint, digest: str) -> Task:
     """The simulation of a point on the workload of that digest.
 
@@ -46,11 +52,11 @@ def task_of(point: GridPoint, digest: str) -> Task:
     """
     config, policy = point.config, canonical(point.policy)
     settings = config.settings
-    talks = policy.rules.idle is not None  # also where nothing else is to do
-    if settings.method == SIMULATE and not talks and _holds_everything(config):
+    # One that rests has something to say also where nothing else is to do.
+    if settings.method == SIMULATE and not policy.rests and _holds_everything(config):
         policy = PolicyParameters(CEILING)
     everywhere = policy.rules.all_resident
-    rules = PlacementRules(pixels=settings.placement.pixels) if everywhere else settings.placement
+    rules = _of_everything(settings.placement) if everywhere else settings.placement
     memory = Memory(fraction=Fraction(1)) if everywhere else config.memory
     machine = constants_of(config)
     is_noisy = machine["noise"] != "0"
@@ -82,11 +88,11 @@ def constants_of(config: Config) -> dict[str, Any]:
 def canonical(policy: PolicyParameters) -> PolicyParameters:
     """The policy without its label, and with the defaults of what its rules do not read."""
     rules, defaults = policy.rules, PolicyParameters()
-    if rules.all_resident and rules.idle is None:
+    if rules.all_resident and not policy.rests:
         return PolicyParameters(CEILING)
     ignored = ["label"]
     ignored += sorted(set(NUMBERS) - set(numbers_read(rules)))
-    ignored += [] if knows_loads(rules) else ["load_info", "refresh_ps", "sample_ps"]
+    ignored += [] if policy.knows_loads else ["load_info", "refresh_ps", "sample_ps"]
     ignored += [] if rules.asks else ["merge_requests"]
     unread: dict[str, Any] = {name: getattr(defaults, name) for name in ignored}
     return replace(policy, **unread)

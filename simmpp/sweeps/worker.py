@@ -86,7 +86,7 @@ def _outcome(task: Task, timeout_s: float | None) -> Outcome:
         tick=watch.look,
     )
     with ended_after(timeout_s):
-        numbers = method.numbers(case)
+        numbers = dict(method.numbers(case))
     spent = watch.seconds
     return Outcome(task.key, numbers, _effective_fraction(case, method), spent.wall, spent.cpu)
 

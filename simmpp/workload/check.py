@@ -18,6 +18,9 @@ from simmpp.workload.workload import (
     Workload,
 )
 
+MOST_DEPOSITED = 2.0**62
+"""Units of all deposits together, so that int64 can count them."""
+
 
 def check(workload: Workload, where: str) -> None:
     """Raise WorkloadError, naming ``where``, unless the arrays fit together."""
@@ -30,6 +33,7 @@ def check(workload: Workload, where: str) -> None:
 def _problem_of_shapes(workload: Workload) -> str:
     n, n_objects = workload.n_rays, workload.n_objects
     lengths = {"child_offsets": n + 1, "itinerary_offsets": n + 1}
+    lengths |= {"test_deposits": workload.n_tests, "round_residuals": workload.n_rounds}
     for name, dtype in ARRAYS.items():
         array = getattr(workload, name)
         if array.dtype != dtype:
@@ -107,6 +111,11 @@ def _problem_of_extras(workload: Workload) -> str:
         return f"a ray's tests cost more than 2^{MOST_TEST_SCALE} of the object's"
     if (workload.object_results < 0).any():
         return "an object has results of a negative size"
+    deposits, residuals = workload.test_deposits, workload.round_residuals
+    if len(deposits) and (deposits.min() < 0 or deposits.sum(dtype=np.float64) >= MOST_DEPOSITED):
+        return "a test deposits less than nothing, or all together too much"
+    if not ((residuals >= 0) & (residuals <= 1)).all():
+        return "a share that is left after a round is not from 0 to 1"
     return ""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -20,8 +20,13 @@ def digest_of(scene: Scene, picture: Picture) -> str:
 
     Of a material only what spawns rays counts; names, colours and the background do not.
     """
+    return hashed(_parts(scene, picture))
+
+
+def hashed(parts: Iterable[memoryview]) -> str:
+    """Hexadecimal SHA-256 of parts, each with its length."""
     digest = hashlib.sha256()
-    for part in _parts(scene, picture):
+    for part in parts:
         digest.update(part.nbytes.to_bytes(8, "little"))
         digest.update(part)
     return digest.hexdigest()
@@ -38,8 +43,14 @@ def _parts(scene: Scene, picture: Picture) -> Iterator[memoryview]:
     spawned = [_spawning(material, picture) for material in scene.materials]
     objects = columns_of(scene)
     of_materials = np.array(spawned, dtype=np.float64)  # (m, ...), or (0,) of nothing
-    yield sizes_on_the_wire(objects).data
     yield of_materials[objects.materials].data
+    yield from parts_of_geometry(scene)
+
+
+def parts_of_geometry(scene: Scene) -> Iterator[memoryview]:
+    """What tells the objects of one scene from those of another, but for their materials."""
+    objects = columns_of(scene)
+    yield sizes_on_the_wire(objects).data
     yield from (objects.kinds.data, objects.spheres.data, objects.cones.data)
     yield from (objects.n_vertices.data, objects.vertices.data)
     yield from (objects.n_faces.data, objects.faces.data)

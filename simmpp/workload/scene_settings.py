@@ -20,6 +20,9 @@ from simmpp.scene.parts import Parts
 from simmpp.scene.scene import Scene, Vector
 from simmpp.scene.spd.generators import GENERATORS, find_generator, known_names, load_spd
 from simmpp.scene.view import AXES, CameraKey, Lights, View, three, viewed
+from simmpp.workload.particles.cells import CellsKey
+from simmpp.workload.particles.settings import Particles
+from simmpp.workload.particles.source import ParticleSource
 from simmpp.workload.ray_source import FileSource, RaySource, SceneSource
 
 SIZE = "an integer from 1 to what the scene can have"
@@ -50,6 +53,8 @@ class Kind:
     """Keys that the loader reads."""
     is_file: bool = True
     """The value is a file's name."""
+    asks: tuple[str, ...] = ("picture", "radiosity")
+    """Keys of a configuration that say what its rays are for."""
 
 
 SOURCES = {
@@ -57,7 +62,8 @@ SOURCES = {
     "nff": Kind(load_nff),
     "mesh": Kind(_load_mesh, ("objects", "up")),
     "parts": Kind(load_parts, ("objects", "up"), is_file=False),
-    "workload": Kind(),
+    "cells": Kind(is_file=False, asks=("particles",)),
+    "workload": Kind(asks=()),
 }
 VIEW = ("camera", "lights", "up", "background")
 """Keys that go with all that is traced."""
@@ -113,6 +119,8 @@ class SceneSettings(Strict):
     camera's own where the file has one."""
     background: Annotated[Vector, *three("[0, 0, 0]", 0.0)] | None = None
     """Red, green and blue of what rays meet that hit nothing; traced paths are lit by it."""
+    cells: CellsKey | None = None
+    """Cells that particles fly through, in place of a scene: a preset, or one's own."""
     workload: Text | None = None
     """Rays of another renderer, in Parquet or npz, in place of a scene."""
 
@@ -161,11 +169,19 @@ class SceneSettings(Strict):
         return self.model_copy(update=changed)
 
     @property
+    def kind(self) -> tuple[str, tuple[str, ...]]:
+        """The key that is given, and the keys that say what its rays are for."""
+        key = next(key for key in SOURCES if getattr(self, key) is not None)
+        return key, SOURCES[key].asks
+
+    @property
     def source(self) -> RaySource:
         """Where the rays come from; file names are taken from the present folder."""
-        key = next(key for key in SOURCES if getattr(self, key) is not None)
+        key, _ = self.kind
         kind = SOURCES[key]
         value, load = getattr(self, key), kind.load
+        if self.cells is not None:
+            return ParticleSource(self.cells, Particles())
         if load is None:
             return FileSource(value)
         further = {name: getattr(self, name) for name in kind.further}

@@ -18,9 +18,11 @@ from simmpp.scene.packed import kind_of
 from simmpp.scene.scene import Scene
 from simmpp.scene.spd.generators import known_names
 from simmpp.workload.exchange.columns import is_workload
-from simmpp.workload.ray_source import RaySource
+from simmpp.workload.particles.presets import PRESETS
+from simmpp.workload.ray_source import NO_GEOMETRY, RaySource
 from simmpp.workload.scene_settings import SceneSettings
 
+CELLS = "expected a scene to trace; particles fly through cells, which have no surfaces"
 A_SCENE = "a name such as mountain:5, a file or a mapping"
 
 
@@ -36,6 +38,10 @@ def long_scene(value: object) -> object:
         return {"spd": value}
     if name in known_names():
         return {"spd": name, "size": detail if number is None else number}
+    if value in PRESETS:
+        return {"cells": {"preset": value}}
+    if name in PRESETS:
+        return {"cells": {"preset": name, "fineness": detail if number is None else number}}
     if number is not None:
         return {"mesh": name, "objects": {"clusters": number}}
     if detail in ("nodes", "components", "groups") and colon:
@@ -92,6 +98,12 @@ def _written(spec: Any) -> Any:
 def scene_of(source: RaySource, where: str) -> Callable[[], Scene]:
     """What makes the scene; ConfigError, naming ``where`` it was asked for, if there is none."""
     if source.scene is None:
-        problem = "expected a scene to trace; a workload file has rays, but no geometry"
+        problem = CELLS if source.can_draw else NO_GEOMETRY
         raise ConfigError(problem, where=where)
     return source.scene
+
+
+def require_drawn(source: RaySource, where: str) -> None:
+    """Raise ConfigError, naming ``where`` it was asked for, for rays that nothing comes of."""
+    if not source.can_draw:
+        raise ConfigError(NO_GEOMETRY, where=where)

@@ -92,6 +92,12 @@ class Workload:
     object_results: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(N,) int64 bytes: of the object's tally, which lives with its owner; (0,) if there is none.
     """
+    test_deposits: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(tests,) int64 in units of 2^-32: what each test leaves in the tally of its object; (0,)
+    where a ray leaves the weight of its root, in what it hits."""
+    round_residuals: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    """(rounds,) float64: of what is to be done, the share that is left after each round; (0,) if
+    none is told."""
 
     @property
     def n_rays(self) -> int:

@@ -9,7 +9,7 @@ import os
 from dataclasses import asdict, replace
 
 import pytest
-from builders import SHARING, Case, random_case
+from builders import SHARING, Case, random_case, some_stealing
 from implementations import run
 
 from simmpp.engine.simulate import ENGINES
@@ -26,7 +26,7 @@ CHUNKS = range(FIRST_SEED, FIRST_SEED + CASES, CHUNK)
 @pytest.mark.parametrize("first_seed", CHUNKS)
 def test_every_integer_is_the_oracles(engine: str, first_seed: int) -> None:
     for seed in range(first_seed, min(first_seed + CHUNK, FIRST_SEED + CASES)):
-        assert_equal(engine, random_case(seed), seed)
+        assert_equal(engine, some_stealing(random_case(seed), seed), seed)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -11,7 +11,7 @@ from dataclasses import asdict, replace
 from typing import Literal
 
 import pytest
-from builders import Case, random_case, with_capacity, with_policy
+from builders import Case, random_case, some_stealing, with_capacity, with_policy
 from implementations import IMPLEMENTATIONS, run
 
 from simmpp.engine.simulate import ENGINES
@@ -27,7 +27,7 @@ ORDERS: tuple[Literal["depth-first"], Literal["breadth-first"]] = ("depth-first"
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_integer_is_the_oracles(engine: str) -> None:
     for seed in range(FIRST, FIRST + CASES):
-        case = with_capacity(random_case(seed), seed)
+        case = with_capacity(some_stealing(random_case(seed), seed), seed)
         expected, got = asdict(run("oracle", case)), asdict(run(engine, case))
         for name in expected:
             said = f"seed {seed}: {name} under {case.policy}, {case.placement.capacity}"
@@ -38,7 +38,8 @@ def test_every_integer_is_the_oracles(engine: str) -> None:
 @pytest.mark.parametrize("order", ORDERS)
 def test_a_capacity_that_nothing_fills_changes_nothing(implementation: str, order: str) -> None:
     for seed in range(CASES // 4):
-        case = with_policy(replace(random_case(seed), ready_order=order), merge_requests=True)
+        drawn = some_stealing(random_case(seed), seed)
+        case = with_policy(replace(drawn, ready_order=order), merge_requests=True)
         without = asdict(run(implementation, case))
         for flow in ("credits", "none"):
             bounds = Capacity(BEYOND, flow)  # type: ignore[arg-type]

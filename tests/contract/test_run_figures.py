@@ -73,7 +73,7 @@ def test_traffic_is_all_messages_and_bytes(case: Case) -> None:
     result, motion = seen(case)
     assert int(motion.messages.sum()) == result.messages
     assert int(motion.bytes.sum()) == result.bytes_sent
-    assert tuple(motion.sizes.sum(axis=1).tolist()) == (*result.messages_by_kind, 0)
+    assert tuple(motion.sizes.sum(axis=1).tolist()) == (*result.messages_by_kind, 0, 0)
     assert int(motion.batches[0].sum()) == result.ray_messages
     assert int(motion.batches[1].sum()) == result.rays_sent
 
@@ -250,7 +250,7 @@ def test_one_ray_that_fetches_one_object() -> None:
     assert motion.link_bytes[:, 1:].sum() == 0
     assert motion.hops.tolist() == [0, 0, 2]
     sizes = {k: np.flatnonzero(motion.sizes[i]).tolist() for i, k in enumerate(MESSAGE_KINDS)}
-    assert sizes == {"request": [4], "object": [6], "rays": [], "load": [], "user": []}
+    assert sizes == {"request": [4], "object": [6], "rays": [], "load": [], "user": [], "steal": []}
     assert motion.transient_bytes.tolist() == [50, 0, 0, 0]
     assert motion.resident_bytes.tolist() == [40, 0, 50, 0]
     assert motion.pixel_cost_ps.tolist() == [[2 * 1000 + 500]]

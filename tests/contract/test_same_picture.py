@@ -14,7 +14,7 @@ import simmpp
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.placement import Owners, Pixels, Residents
-from simmpp.policy.parameters import POLICIES
+from simmpp.policy.parameters import CEILING, POLICIES
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.verify import verify
 
@@ -25,6 +25,7 @@ POLICIES_AND_INFO = (
     *(replace(CONCURRENT, name=name) for name in POLICIES if name != "concurrent"),
     *(replace(CONCURRENT, load_info=info) for info in ("piggyback", "exact", "none")),  # type: ignore[arg-type]
     replace(CONCURRENT, refresh_ps=10**9),
+    *(replace(CONCURRENT, name=name, steal="half") for name in ("concurrent", CEILING)),
 )
 
 

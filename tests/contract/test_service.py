@@ -11,7 +11,7 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from builders import SHARING, Case, random_case, served
+from builders import SHARING, Case, random_case, served, some_stealing
 from implementations import result_of, run
 from numpy.typing import NDArray
 
@@ -39,7 +39,7 @@ def rows(result: Result, event: str) -> NDArray[np.void]:
 @pytest.mark.parametrize("service", SERVERS)
 def test_every_integer_is_the_oracles(engine: str, service: str) -> None:
     for seed in SEEDS:
-        assert_equal(engine, served(random_case(seed), service, seed), seed)
+        assert_equal(engine, served(some_stealing(random_case(seed), seed), service, seed), seed)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import floor
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
-from simmpp.machine.messages import RAYS, REQUEST, USER
+from simmpp.machine.messages import RAYS, REQUEST, STEAL, USER
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
@@ -45,13 +45,19 @@ def unpacking(machine: Machine, kind: int, payload_bytes: int) -> int:
 
 
 def _copying(machine: Machine, costs: tuple[CopyCost, ...], kind: int, n_bytes: int) -> int:
-    if machine.service == "nic" and kind not in (RAYS, USER):
+    if machine.service == "nic" and kind not in (RAYS, USER, STEAL):
         return 0
-    return copy_ps(costs[REQUEST if kind == USER else kind], n_bytes)
+    return copy_ps(costs[REQUEST if kind in (USER, STEAL) else kind], n_bytes)
 
 
-def intersection_ps(machine: Machine, workload: Workload, obj: int) -> int:
-    """Time of one ray-object intersection."""
+def intersection_ps(machine: Machine, workload: Workload, obj: int, ray: int = -1) -> int:
+    """Time of one ray-object intersection, of a ray or of one that costs no more than others."""
+    if ray >= 0 and len(workload.ray_test_scales):
+        return _of_object(machine, workload, obj) * 2 ** int(workload.ray_test_scales[ray])
+    return _of_object(machine, workload, obj)
+
+
+def _of_object(machine: Machine, workload: Workload, obj: int) -> int:
     kind, triangles = int(workload.object_kinds[obj]), int(workload.object_triangles[obj])
     test = machine.test
     base = {

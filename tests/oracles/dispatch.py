@@ -160,7 +160,7 @@ class Dispatch(Views):
 
     def refresh(self, pe: PE) -> None:
         """The own load to every partner that was sent nothing for long."""
-        if self.policy.refresh_ps is None or not knows_loads(self.rules):
+        if self.policy.refresh_ps is None or not (knows_loads(self.rules) or self.steals):
             return
         for other in self.others(pe):
             last, load = pe.last_departure[other], Part(LOAD, 0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from oracles.state import PE, Message
-from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
+from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST, STEAL, USER
 
 
 class Slice(NamedTuple):
@@ -63,6 +63,7 @@ class Outcome:
     """Requests, objects, batches of rays and loads that messages carried."""
     user_messages: int
     user_dropped: int
+    steal_messages: int
     compute_ps: list[int]
     communication_ps: list[int]
     waiting_ps: list[int]
@@ -139,7 +140,7 @@ class Ledger:
         if m is not None:
             state |= {"kind": m.kind, "number": m.send_number, "payload_bytes": m.payload_bytes}
             state |= {"other": m.source if what in ("receive", "serve") else m.destination}
-            state |= {"rays": m.n_rays}
+            state |= {"rays": m.n_rays + m.n_pixels}
             state |= {"objects": m.count(OBJECT), "requests": m.count(REQUEST)}
         self.slices.append(Slice(pe.number, begin, what, end, **(state | more)))
 
@@ -188,6 +189,7 @@ class Ledger:
             rays_sent=sum(m.n_rays for m in sent),
             user_messages=sum(m.kind == USER for m in sent),
             user_dropped=self.dropped,
+            steal_messages=sum(m.kind == STEAL for m in sent),
             parts_by_kind=(parts[0], parts[1], parts[2], parts[3]),
             compute_ps=compute,
             communication_ps=communication,

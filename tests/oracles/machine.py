@@ -18,7 +18,7 @@ from oracles.pace import Go, draw_noise, speed_now
 from oracles.serving import Serving
 from oracles.state import PE, Message, Part
 from simmpp.machine.machine import Machine
-from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, USER
+from simmpp.machine.messages import LOAD, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, STEAL, USER
 from simmpp.placement.placement import Placement
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.policy.reads import names_in
@@ -87,8 +87,10 @@ class Simulation(Serving):
             clock = self.pay("communication", pe, time, self.unpacking(pe, message))
             self.ledger.received += 1
             self.hear_load(clock, pe, message)
-        if message.carries:
+        if message.carries or message.n_pixels:
             self.get_on(pe)
+        if message.n_rays or message.n_pixels:
+            pe.asked = set()
         pe.refresh_allowed = not message.count(LOAD)
         far = distance(self.machine, message.source, pe.number)
         for part in message.parts:
@@ -103,6 +105,9 @@ class Simulation(Serving):
                 pe.make_ready([pe.stuck], self.ready_order)
             elif part.kind == OBJECT:
                 self.cross(self.release(pe, part.obj), 2 * far)
+            elif part.kind == STEAL:
+                self.take_pixels(pe, part)
+                self.cross(part.pixels or (), far)
         self.ledger.did(pe, time, "receive", clock, message)
         wanted = [part for part in message.parts if part.kind == REQUEST]
         if wanted and self.machine.service == "pe":
@@ -113,6 +118,8 @@ class Simulation(Serving):
             clock = self.send(clock, pe, message.source, answer)
         if message.count(USER):
             clock = self.hear(clock, pe, message)
+        if message.count(STEAL):
+            clock = self.answer_thief(clock, pe, message)
         self.sample_rays(pe)
         return clock
 
@@ -175,10 +182,13 @@ class Simulation(Serving):
         """One intersection."""
         self.ledger.tested.append((ray, obj))
         self.get_on(pe)
-        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj))
+        pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj, ray))
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
         was_granted = ray in pe.granted
+        if was_granted and self.itineraries[ray][self.positions[ray] :][:1] == [obj]:
+            pe.use(obj)
+            return clock
         pe.granted.discard(ray)
         if pe.stuck == ray:
             pe.stuck, was_granted = None, False

@@ -71,6 +71,10 @@ class Bounded(World):
         self.most_alive = [0] * self.workload.n_rays
         for ray in reversed(range(self.workload.n_rays)):
             self.most_alive[ray] = max(1, sum(self.most_alive[c] for c in self.children[ray]))
+        self.steals = self.policy.steal != "none"
+        if self.credits or self.steals:
+            for pe in self.pes:
+                pe.pixels, pe.ready = pe.ready, []
         if self.bounds is None:
             return
         for pe in self.pes:
@@ -79,7 +83,6 @@ class Bounded(World):
         if self.credits:
             self.parts = self.split()
             for pe in self.pes:
-                pe.pixels, pe.ready = pe.ready, []
                 pe.credit = Counter({q: self.parts[q].share for q in self.others(pe)})
         for pe in self.pes:
             self.note_memory(pe)
@@ -212,6 +215,8 @@ class Bounded(World):
 
     def fits(self, pe: PE, ray: int) -> bool:
         """Is there room for all that may come of a ray?"""
+        if not self.credits:
+            return True
         more = self.machine.ray_bytes * self.most_alive[ray]
         return self.ray_memory(pe) + more <= self.parts[pe.number].queue
 
@@ -389,6 +394,7 @@ class Bounded(World):
             "peak_control": self.peak_control,
             "credit_messages": sum(m.departure <= end for m in self.credit_messages),
             "escapes": self.escapes,
+            "least_bytes": least,
             "fits": int(capacity >= least and exceeds == 0),
             "exceeds_bytes": exceeds,
             "infeasible": int(self.infeasible),
@@ -405,7 +411,8 @@ class Bounded(World):
             assert self.eventless <= most
             held = sum(len(pe.ready) + len(pe.waiting) + len(pe.pixels) for pe in self.pes)
             held += sum(len(lying.rays) for pe in self.pes for lying in pe.shares)
-            held += sum(m.n_rays for m in [*self.flying, *(m for pe in self.pes for m in pe.inbox)])
+            on_their_way = [*self.flying, *(m for pe in self.pes for m in pe.inbox)]
+            held += sum(m.n_rays + m.n_pixels for m in on_their_way)
             held += sum(pe.stuck is not None and pe.stuck not in pe.ready for pe in self.pes)
             assert held == self.alive
         self.check_credits()

@@ -22,6 +22,8 @@ class Part(NamedTuple):
     obj: int = -1
     rays: tuple[int, ...] = ()
     words: tuple[int, ...] = ()
+    pixels: tuple[int, ...] | None = None
+    """An answer to a thief."""
     escape: bool = False
     """A request for, or an object of, the room of an escape."""
 
@@ -67,6 +69,11 @@ class Message:
     def carries(self) -> bool:
         """Whether rays or an object are in it."""
         return bool(self.count(OBJECT) or self.count(RAYS))
+
+    @property
+    def n_pixels(self) -> int:
+        """That a thief gets."""
+        return len(self.parts[0].pixels or ())
 
     @property
     def asks_for_load(self) -> bool:
@@ -129,7 +136,12 @@ class PE:
     draws: int = 0
     """Random numbers that the policy was given."""
     pixels: list[int] = field(default_factory=list)
-    """With credits: primary rays that are not started, and so are not among the ready ones."""
+    """With credits, or stealing: primary rays that are not started, and so are not among the ready
+    ones."""
+    asked: set[int] = field(default_factory=set)
+    """PEs that were asked for pixels since rays or pixels came last."""
+    awaits: bool = False
+    """One of them has not answered."""
     untouched: set[int] = field(default_factory=set)
     """Without: primary rays among the ready ones that were never the first."""
     cut: bool = False

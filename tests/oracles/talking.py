@@ -6,9 +6,9 @@ import heapq
 from types import SimpleNamespace
 
 from oracles.costs import copy_ps
-from oracles.dispatch import Dispatch
 from oracles.network import distance, network_ps, receiving, sending
 from oracles.state import PE, Message, Part
+from oracles.stealing import Stealing
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import REQUEST, USER
 from simmpp.policy.policy import Hook
@@ -18,7 +18,7 @@ USER_BYTES = 32
 LEAST_SLEEP_PS = 10**6
 
 
-class Talking(Dispatch):
+class Talking(Stealing):
     """The policy's hooks heard and idle."""
 
     def hear(self, clock: int, pe: PE, message: Message) -> int:
@@ -34,18 +34,18 @@ class Talking(Dispatch):
 
     def fall_asleep(self, time: int, pe: PE) -> None:
         """Nothing is to do: say what there is to say, then sleep."""
-        pe.wish = 0
+        pe.wish, clock, sent = 0, time, len(self.ledger.sent)
         if self.rules.idle is not None:
             pe.clock = time
             view = self.view_of_words(pe, None, self.rules.idle)
             pe.wish = int(self.rules.idle(view))  # type: ignore[arg-type]
-            sent = len(self.ledger.sent)
             other = dict(enumerate(self.island_of(pe.number))).get(view.other, pe.number)
             clock = time if view.other == -1 else self.say(time, pe, other, view.words)
-            if len(self.ledger.sent) > sent:
-                self.schedule(clock, pe, "rest")
-                return
-        self.sleep(time, pe)
+        clock = self.steal(clock, pe)
+        if len(self.ledger.sent) > sent:
+            self.schedule(clock, pe, "rest")
+        else:
+            self.sleep(time, pe)
 
     def rest(self, time: int, pe: PE) -> None:
         """What there was to say has been sent."""

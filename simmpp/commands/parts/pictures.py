@@ -12,8 +12,8 @@ from simmpp.common.errors import ConfigError
 from simmpp.common.units import format_ps, picoseconds
 from simmpp.run.point import Point, PolicyRun
 from simmpp.run.unfinished import finished_roots
-from simmpp.workload.sources import scene_of
-from simmpp.workload.trace.shading import render, save_png
+from simmpp.workload.describe import roots
+from simmpp.workload.trace.shading import save_png
 
 
 def until_of(text: str | None, picture: Path | None) -> int | None:
@@ -31,8 +31,8 @@ def until_of(text: str | None, picture: Path | None) -> int | None:
 def write_picture(point: Point, path: Path) -> None:
     """The picture that one processor alone would make."""
     with at_work("drawing the picture"):
-        scene = scene_of(point.config.ray_source, "--picture")()
-        save_png(render(scene, point.config.picture, point.workload), path)
+        config = point.config
+        save_png(config.ray_source.draw(config.picture, point.workload), path)
 
 
 def write_unfinished(
@@ -40,15 +40,15 @@ def write_unfinished(
 ) -> list[Path]:
     """The picture of each policy at that moment, beside the whole one; says how far each is."""
     files, workload = [], point.workload
-    scene = scene_of(point.config.ray_source, "--picture")()
+    config = point.config
     say()
     for run in runs:
         done = finished_roots(workload, run.result, until_ps)
         title = re.sub(r"[^\w.+-]+", "-", run.parameters.title)
         file = path.with_name(f"{path.stem}-{title}{path.suffix}")
         with at_work(f"drawing the picture of {run.parameters.title}"):
-            save_png(render(scene, point.config.picture, workload, done), file)
-        share = f"{done.mean():.1%} of {len(done)} primary rays are finished"
+            save_png(config.ray_source.draw(config.picture, workload, done), file)
+        share = f"{done.mean():.1%} of {len(done)} {roots(workload)} are finished"
         say(f"{run.parameters.title} at {format_ps(until_ps)}: {share}")
         files.append(file)
     return files

@@ -18,18 +18,22 @@ from simmpp.run.rows import PROFITS, RESULTS
 from simmpp.sweeps.profits import missed
 from simmpp.sweeps.sweep import SweepResult
 from simmpp.sweeps.winners.answer import answer
-from simmpp.sweeps.winners.machines import machines_of
-from simmpp.sweeps.winners.points import points_of
-from simmpp.sweeps.winners.sentence import Sentence
+from simmpp.sweeps.winners.fit_table import fit_table
+from simmpp.sweeps.winners.machines import Machines, machines_of
+from simmpp.sweeps.winners.points import Points, points_of
 
 PROFITS_SHOWN = 40
 
 
 def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
     """Print who wins, the profits, and what failed; the exit code."""
-    for sentence in _answer(out):
+    points, machines = _points(out)
+    for sentence in answer(points, machines):
         say(sentence.text)
     say()
+    if any(points.unfit) and len(lines := fit_table(points)) > 1:
+        say(table(lines[:PROFITS_SHOWN], n_keys=len(points.axes), is_sweep=True))
+        say()
     rows = result.rows
     failed = rows[rows["error"].notna()]
     say(_table(result))
@@ -46,13 +50,13 @@ def print_result(result: SweepResult, settings: Settings, out: Path) -> int:
     return FAILED if len(failed) else 0
 
 
-def _answer(out: Path) -> list[Sentence]:
-    """Who wins, as the page of the folder says."""
+def _points(out: Path) -> tuple[Points, Machines | None]:
+    """What the page of the folder is made of."""
     folder = read_folder(out)
     points = points_of(
         folder.rows, folder.further, folder.profits, folder.labels, folder.confidence
     )
-    return answer(points, machines_of(points, folder.record))
+    return points, machines_of(points, folder.record)
 
 
 def _reached(result: SweepResult, tolerance: Fraction, most: int) -> Iterator[str]:

@@ -68,6 +68,8 @@ class Sizes:
     """In flight or in an inbox, to begin with."""
     talks: bool
     """The policy may send messages of its own."""
+    steals: bool
+    """PEs ask others for pixels."""
     tested: int
     """Tests that are recorded."""
     ended: int
@@ -100,6 +102,7 @@ ARRAYS = {
     "child_offsets": Array(I4),  # (n + 1,)
     "object_bytes": Array(I8),  # (N,)
     "test_ps": Array(I8),  # (N,)
+    "test_scales": Array(I1),  # (n,) tests of this ray cost 2^k of that; empty if all k are 0
     "owners": Array(I4),  # (N,), in each island, counted from its first PE
     # PEs that hold each object for good (CSR); empty where the policy does not want to know.
     "holder_offsets": Array(I8),
@@ -141,6 +144,8 @@ ARRAYS = {
     "message_marks": Array(I4, lambda n: 2),
     # Words of messages of the policy's own, USER_WORDS for each place; empty if it sends none.
     "user_words": Array(I8, lambda n: USER_WORDS * n.messages if n.talks else 0),
+    # Beside ``peers``: the idle spell in which a PE has asked the other for pixels.
+    "asked_in": Array(I4, lambda n: n.peers if n.steals else 0),
     # Misses with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_from rays on.
     "unasked_ends": Array(I4, lambda n: 4 * n.nb),
     "unasked_links": Array(I4, lambda n: 2 * n.misses),
@@ -221,6 +226,7 @@ PARAMETERS = (
     "keep_reads",
     "heard_reads",
     "idle_reads",
+    "steals",  # PEs without rays ask others for pixels
     "talks",  # the policy may send messages of its own
     "remembers",  # each PE has a view of its own
     "to_holders",  # rays may go to any PE that holds what they need

@@ -57,6 +57,9 @@ PE = np.dtype(
         ("wakes", "i8"),  # times that it was woken since then because its policy wanted to be
         ("wake_ps", "i8"),  # when it wants to be, 0: not at all
         ("woken_ps", "i8"),  # when it was, last
+        ("spell", "i4"),  # idle spells, ended by rays or pixels that come; the first is 1
+        ("asked", "i4"),  # PEs that it has asked for pixels in this one
+        ("awaits", "i4"),  # 1: an answer to that
     ],
     align=True,
 )
@@ -74,7 +77,7 @@ RAY = np.dtype(
     [
         ("tested", "i4"),  # objects of its itinerary that it has been tested against
         ("next", "i4"),  # next ray of the list that this ray is in
-        ("granted", "i4"),  # 1: the next test uses a fetched object that is pinned for it
+        ("granted", "i4"),  # 1: the next tests of one object use it, fetched and pinned for them
         ("hops", "i4"),  # with record_hops: links crossed for it
     ],
     align=True,
@@ -169,7 +172,10 @@ MESSAGE = np.dtype(
         ("last", "i4"),
         ("n", "i4"),
         ("kind", "i4"),  # of this part, and so of the message; NONE: a free place
-        ("purpose", "i4"),  # ORDINARY, FOR_ESCAPE (a request, an object), FOR_CREDIT (a load)
+        # ORDINARY, FOR_ESCAPE (a request, an object), FOR_CREDIT (a load), FOR_PIXELS (who steals
+        # asks; the answer is ordinary, and has its pixels from ``first`` on, where ``pixels`` has
+        # them, not linked)
+        ("purpose", "i4"),
     ],
     align=True,
 )
@@ -244,7 +250,7 @@ SLICE = np.dtype(
 )
 """What is counted of a PE when it works again, or the run is over: it may end before the work."""
 
-ORDINARY, FOR_ESCAPE, FOR_CREDIT = range(3)
+ORDINARY, FOR_ESCAPE, FOR_CREDIT, FOR_PIXELS = range(4)
 PIGGYBACK, EXACT, NO_INFO, SAMPLED, TWO = range(5)
 LOAD_INFO = {
     "piggyback": PIGGYBACK,
@@ -257,8 +263,8 @@ SINGLY, REQUESTS_TOGETHER, ALL_TOGETHER = range(3)
 PACKING = {"none": SINGLY, "requests": REQUESTS_TOGETHER, "all": ALL_TOGETHER}
 BEGIN, DISPATCH, REST, WOKEN = range(4)
 """Phases of a PE's instants: an activity begins, or has ended and its policy decides; what ``idle``
-said has been sent, and the PE sleeps if no message has come; the time that ``idle`` gave is there,
-unless a message was before it."""
+said, or a question for pixels, has been sent, and the PE sleeps if no message has come; the time
+that ``idle`` gave is there, unless a message was before it."""
 SLEEP = -1
 """In place of the time of a PE's next instant: none, until a message arrives."""
 ARRIVAL, RECEIVE, COMPUTE, SEND, SERVE, ANSWER = range(6)

@@ -22,7 +22,7 @@ from simmpp.common.compiled import kernel
 from simmpp.common.philox import philox
 from simmpp.common.randomness import key
 from simmpp.engine.arrays.records import NONE, Row, Run
-from simmpp.engine.arrays.views import noise_factors, pes, test_ps
+from simmpp.engine.arrays.views import noise_factors, pes, test_ps, test_scales
 from simmpp.machine.machine import Machine
 from simmpp.machine.noise import ONE, factors
 from simmpp.machine.uneven import NOBODY, speeds_of
@@ -91,8 +91,16 @@ def took(s: Run, me: int, cost_ps: int, tests: int, done: int, pace: Pace) -> in
 
 
 @kernel
+def cost_of_test_ps(s: Run, ray: int, obj: int) -> int:
+    """What one test of a ray costs, whoever makes it."""
+    if s.test_scales_n == 0:
+        return test_ps(s)[obj]
+    return test_ps(s)[obj] << np.int64(test_scales(s)[ray])
+
+
+@kernel
 def test_here_ps(s: Run, me: int, obj: int) -> int:
-    """What one test against an object takes a PE, by its speed."""
+    """What one test of a ray that costs no more than others takes a PE, by its speed."""
     pe = pes(s)[me]
     return scaled(test_ps(s)[obj], pe.pace_times, pe.pace_per)
 

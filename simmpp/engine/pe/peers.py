@@ -23,14 +23,20 @@ def peer_of(s: Run, me: int, other: int) -> int:
 @kernel
 def known_load(s: Run, peer_row: int) -> int:
     """What a PE knows of the load of another; NONE: nothing (load_info none)."""
-    peer = peer_rows(s)[peer_row]
+    return load_known_of(s, peer_rows(s)[peer_row].key % s.processors, peer_row)
+
+
+@kernel
+def load_known_of(s: Run, other: int, peer_row: int) -> int:
+    """The same, where there may be no row yet (NONE)."""
     if s.load_info == NO_INFO:
         return NONE
     if s.load_info == EXACT or s.load_info == TWO:
-        return pes(s)[peer.key % s.processors].settled_load
+        return pes(s)[other].settled_load
     if s.load_info == SAMPLED:
-        return pes(s)[peer.key % s.processors].sampled_load
-    return s.initial_load if peer.load == NONE else peer.load
+        return pes(s)[other].sampled_load
+    is_heard = peer_row != NONE and peer_rows(s)[peer_row].load != NONE
+    return peer_rows(s)[peer_row].load if is_heard else s.initial_load
 
 
 @kernel

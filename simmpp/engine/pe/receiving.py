@@ -7,7 +7,9 @@ from simmpp.engine.arrays.records import (
     BY_PE,
     BY_THREAD,
     FOR_ESCAPE,
+    FOR_PIXELS,
     NONE,
+    ORDINARY,
     UNPACK,
     Row,
     Run,
@@ -21,10 +23,11 @@ from simmpp.engine.pe.fetched import admit_object
 from simmpp.engine.pe.peers import hear_load
 from simmpp.engine.pe.ready import cross, make_ready
 from simmpp.engine.pe.sending import answer, forget
+from simmpp.engine.pe.stealing import end_spell, give_pixels, take_pixels
 from simmpp.engine.pe.talking import get_on, hear
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_receive
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, USER
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, STEAL, USER
 from simmpp.machine.topology import hops
 
 
@@ -55,7 +58,7 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         part = messages(s)[part].part
     if s.logs:
         note_receive(s, me, message, now_ps, clock_ps)
-    if s.record_counters and m.kind == RAYS:
+    if s.record_counters and m.kind in (RAYS, STEAL):
         note_load(s, me, clock_ps)
     # Requests are answered as part of the receipt, not by the policy: no one can be left waiting by
     # a rule.
@@ -63,8 +66,12 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         clock_ps = answer(s, me, message, clock_ps, False)
     if m.kind == USER:
         clock_ps = hear(s, me, message, clock_ps)
-    elif m.kind == OBJECT or m.kind == RAYS:
+    elif m.kind == STEAL and m.purpose == FOR_PIXELS:
+        clock_ps = give_pixels(s, me, m.source, clock_ps)
+    elif m.kind == OBJECT or m.n > 0:  # of rays, or pixels
         get_on(pe)
+    if s.steals and m.n > 0:
+        end_spell(pe)
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
@@ -94,6 +101,8 @@ def _take_in(s: Run, me: int, m: Row, links: int) -> None:
         pe.load += m.n
         pe.peak_rays = max(pe.peak_rays, pe.load)
         make_ready(s, me, m.first, m.last, m.n)
+    elif m.kind == STEAL and m.purpose == ORDINARY:
+        take_pixels(s, me, m, links)
 
 
 @kernel

@@ -27,7 +27,6 @@ from simmpp.engine.arrays.views import (
     pes,
     rays,
     rooms,
-    test_ps,
     tested_objects,
     tested_rays,
 )
@@ -37,7 +36,7 @@ from simmpp.engine.pe.bounds.rooms import has_ready, note_memory
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
-from simmpp.engine.pe.pace import pace_of, paced_ps, took
+from simmpp.engine.pe.pace import cost_of_test_ps, pace_of, paced_ps, took
 from simmpp.engine.pe.peers import sample_loads
 from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_ready
 from simmpp.engine.pe.receiving import receive
@@ -87,7 +86,7 @@ def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     pe.settled_load = pe.load
     unpacks = message == NONE and s.bounded and can_unpack(s, me)
     if message == NONE and not unpacks and not has_ready(s, me):
-        return rest(s, me, phase, now_ps) if s.idle != 0 else SLEEP
+        return rest(s, me, phase, now_ps) if s.idle != 0 or s.steals else SLEEP
     s.activities += 1
     if s.bounded:
         _require_progress(s)
@@ -145,7 +144,7 @@ def compute(s: Run, me: int, now_ps: int) -> int:
             if tests == s.quantum:
                 pe.cut = 1
                 break
-            cost_ps += test_ps(s)[obj]
+            cost_ps += cost_of_test_ps(s, ray, obj)
             _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
             tests, at = tests + 1, at + 1
         else:
@@ -190,11 +189,21 @@ def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
     r = rays(s)[ray]
     r.tested += 1
     if r.granted or s.keeps:
+        goes_on = r.granted != 0 and _needs_again(s, ray, obj)
         miss_row = find(misses(s), me * s.n_objects + obj)
         if miss_row != NONE:  # a resident object has none
             touch(s, me, miss_row)
-            if r.granted == 1:
+            if r.granted == 1 and not goes_on:
                 unpin(s, me, miss_row, obj, now_ps)
+        if goes_on:  # what was granted for this test is for the next one as well
+            return
         if r.granted == ESCAPED:
             rooms(s)[me].stuck = NONE
         r.granted = 0
+
+
+@kernel
+def _needs_again(s: Run, ray: int, obj: int) -> bool:
+    """Is the ray's next test against the same object, as of a particle that stays in its cell?"""
+    at = itinerary_offsets(s)[ray] + rays(s)[ray].tested
+    return at < itinerary_offsets(s)[ray + 1] and itinerary_objects(s)[at] == obj

@@ -2,8 +2,8 @@
 
 A message is USER_WORDS numbers; it is sent, travels and is received as any other. Whatever the
 hooks say, a run ends: between two things that get a PE on (a test, a finished ray, a message with
-rays or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many times,
-at least WAKING_PS apart.
+rays, pixels or objects) it sends at most 2 (nb - 1) of them, nb of its island, and is woken as many
+times, at least WAKING_PS apart.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from simmpp.engine.pe.costs import copy_ps, sent_alone_ps, taken_in_ps
 from simmpp.engine.pe.peers import peer_of
 from simmpp.engine.pe.sending import send_user
 from simmpp.engine.pe.showing import show_load, show_nothing, show_self, view_of
+from simmpp.engine.pe.stealing import steal
 from simmpp.engine.record.counters import note_work
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 from simmpp.machine.messages import USER, USER_WORDS, WORD_BYTES
@@ -40,7 +41,7 @@ WAKING_PS = 1_000_000
 
 @kernel
 def get_on(pe: Row) -> None:
-    """The PE has made a test, finished a ray, or received rays or objects."""
+    """The PE has made a test, finished a ray, or received rays, pixels or objects."""
     pe.user_sent, pe.wakes = 0, 0
 
 
@@ -62,14 +63,19 @@ def hear(s: Run, me: int, message: int, now_ps: int) -> int:
 
 @kernel
 def rest(s: Run, me: int, phase: int, now_ps: int) -> int:
-    """Nothing is to do: ask when to be woken, and whom to tell what.
+    """Nothing is to do: ask when to be woken, and whom to tell what; ask for pixels.
 
     Returns when the PE's next instant is if no message comes before, or SLEEP.
     """
     pe = pes(s)[me]
     pe.received_load = 0  # what is sent from here on is no answer to a load
     if phase != REST:
-        clock_ps = _ask(s, me, pe, now_ps)
+        clock_ps = _ask(s, me, pe, now_ps) if s.idle != 0 else now_ps
+        if s.steals:
+            clock_ps = steal(s, me, clock_ps)
+        if s.record_counters and clock_ps > now_ps:
+            note_work(s, me, now_ps, clock_ps, clock_ps)
+        pe.communication_ps += clock_ps - now_ps
         if s.n_sent > 0:
             s.phase = REST
             return clock_ps
@@ -106,11 +112,7 @@ def _ask(s: Run, me: int, pe: Row, now_ps: int) -> int:
     pe.wake_ps = consult(s.idle, view)
     if view.other == NONE:
         return now_ps
-    clock_ps = _say(s, view, me, view.other, now_ps)
-    if s.record_counters and clock_ps > now_ps:
-        note_work(s, me, now_ps, clock_ps, clock_ps)
-    pe.communication_ps += clock_ps - now_ps
-    return clock_ps
+    return _say(s, view, me, view.other, now_ps)
 
 
 @kernel

@@ -52,7 +52,7 @@ class Counters(NamedTuple):
     bytes: Ints
     """(nb, nb): with headers."""
     sizes: Ints
-    """(5, SIZES): messages of each kind whose bytes, with the header, have k binary digits."""
+    """(6, SIZES): messages of each kind whose bytes, with the header, have k binary digits."""
     load_ps: Ints
     """(nb,): rays held times how long."""
 

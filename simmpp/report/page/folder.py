@@ -13,7 +13,7 @@ from typing import Any
 from simmpp.common.errors import ConfigError
 from simmpp.common.files import Row, read_csv
 from simmpp.common.folders import is_at_work, last_call
-from simmpp.methods.columns import COLUMNS, FURTHER, KEYS, METHOD, NUMBERS
+from simmpp.methods.columns import COLUMNS, FURTHER, KEYS, METHOD, NUMBERS, TEXTS
 from simmpp.run import words
 from simmpp.run.record import read_record
 from simmpp.run.rows import (
@@ -34,7 +34,8 @@ from simmpp.sweeps.journal import FILE as JOURNAL
 from simmpp.sweeps.profits import profit_columns
 from simmpp.sweeps.stopping import CORRECTED
 
-INTEGERS, NUMERIC = {"processors", "seed", *NUMBERS, *FURTHER}, {"fraction", "effective_fraction"}
+INTEGERS = {"processors", "seed", *NUMBERS, *FURTHER} - {*TEXTS}
+NUMERIC = {"fraction", "effective_fraction"}
 MAY_BE_EMPTY = {"fraction", "effective_fraction", *NUMBERS, *FURTHER}
 """A memory given in bytes has no fraction, a failed point no results, and a method does not know
 all of them."""
@@ -214,7 +215,7 @@ def _cell(name: str, text: str) -> int | float | str:
         return int(text)
     if name in NUMERIC:
         return _finite(text)
-    return text if name in COLUMNS else number_of(text)
+    return text if name in (*COLUMNS, *TEXTS) else number_of(text)
 
 
 def number_of(text: str) -> int | float | str:

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from simmpp.policy.parameters import POLICIES
+from simmpp.policy.policy import Policy
 from simmpp.policy.reads import settings_used
 from simmpp.run import words
 
@@ -62,10 +63,14 @@ def _policies(entries: Any) -> Iterator[tuple[str, str]]:
     for entry in entries if isinstance(entries, list) else [entries]:
         if isinstance(entry, dict) and isinstance(entry.get("name"), str):
             policy = POLICIES.get(entry["name"])
-            used = entry.keys() - {"name", "label"} if policy is None else settings_used(policy)
+            used = entry.keys() - {"name", "label"} if policy is None else _used(policy, entry)
             yield "policy", _policy(entry, used)
         elif entry is not None:
             yield "policy", words.policy(entry) if isinstance(entry, str) else _listed(entry)
+
+
+def _used(policy: Policy, entry: Mapping[str, Any]) -> Iterable[str]:
+    return settings_used(policy, steals=entry.get("steal", "none") != "none")
 
 
 def _policy(entry: Mapping[str, Any], used: Iterable[str]) -> str:

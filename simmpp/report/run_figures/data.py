@@ -85,7 +85,9 @@ class Motion:
     def pictures(self) -> list[str]:
         """Names of the pictures that there are of it."""
         networks = OF_NETWORKS.get(type(self.topology), ())
-        return ["activity", "progress", *networks, "traffic", "memory", "pixels"]
+        # Roots that are no pixels, such as particles, are all in one row.
+        pixels = ["pixels"] if len(self.pixel_owner) > 1 else []
+        return ["activity", "progress", *networks, "traffic", "memory", *pixels]
 
     @property
     def times_ps(self) -> Ints:
@@ -192,6 +194,8 @@ def pixel_costs(point: Point) -> Ints:
     """What the tests and rays of each pixel's tree cost: (rows, columns) ps."""
     workload, machine = point.workload, point.machine
     test_ps = machine.test.of_objects(workload)[workload.itinerary_objects]
+    if len(workload.ray_test_scales):
+        test_ps <<= np.repeat(workload.ray_test_scales, np.diff(workload.itinerary_offsets))
     before_ps = np.concatenate([[0], np.cumsum(test_ps, dtype=np.int64)])
     ray_ps = np.diff(before_ps[workload.itinerary_offsets]) + machine.ray_ps
     return _by_pixel(point, ray_ps)

@@ -12,7 +12,6 @@ from simmpp.common.errors import ConfigError
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.run_figures.data import Motion, motion_of
 from simmpp.run.point import Point, PolicyRun
-from simmpp.workload.trace.shading import render
 
 MOST_DRAWN_PES = 2048
 
@@ -52,5 +51,5 @@ def _draw(name: str, motion: Motion, folder: Path) -> list[Path]:
 
 def _picture(point: Point) -> NDArray[np.uint8] | None:
     """What was rendered, if there is a scene and not only its rays."""
-    load_scene = point.config.ray_source.scene
-    return load_scene and render(load_scene(), point.config.picture, point.workload)
+    source = point.config.ray_source
+    return source.draw(point.config.picture, point.workload) if source.can_draw else None

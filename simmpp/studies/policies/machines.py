@@ -68,6 +68,7 @@ def random_case(policy: PolicyParameters, seed: int) -> Case:
         **_LOADS[int(rng.integers(len(_LOADS)))],
         merge_requests=bool(rng.integers(2)),
         packing=packings[int(rng.integers(len(packings)))],
+        steal=("none", "none", "half")[int(generator(seed, "who steals").integers(3))],
     )
     order = ("depth-first", "breadth-first")[int(rng.integers(2))]
     return Case(seed, workload, _random_machine(rng, processors), placement, variant, order)

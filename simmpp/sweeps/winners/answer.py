@@ -21,7 +21,7 @@ from simmpp.sweeps.winners.contest import (
     Contest,
     contests_of,
 )
-from simmpp.sweeps.winners.fitting import fit_sentences
+from simmpp.sweeps.winners.fitting import fit_sentences, nothing_ran
 from simmpp.sweeps.winners.machines import Machines
 from simmpp.sweeps.winners.machines_told import machine_sentences
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
@@ -44,7 +44,7 @@ def answer(points: Points, machines: Machines | None = None) -> list[Sentence]:
     """The same of points, with their machines where they are compared."""
     contests = contests_of(points)
     if not contests:
-        return [Sentence("No point has a result."), *fit_sentences(points)]
+        return [nothing_ran(points), *fit_sentences(points)]
     if all(contest.certainty == ALONE for contest in contests):
         text = f"Only {_flows(contests)} was run: there is nothing to compare it with."
         lines = [Sentence(text, tuple(cases_of(contests)))]

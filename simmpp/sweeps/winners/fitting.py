@@ -22,11 +22,15 @@ class Fit(NamedTuple):
     kind: str
     bytes: int
     """That one PE lacks, or held too much: the most of all seeds."""
+    reason: str = ""
+    """Why it is stuck."""
 
     def __str__(self) -> str:
         """``"does not fit: lacks 1.2 GB"``."""
         size = _rounded(self.bytes)
         more = {LACKS: f": lacks {size}", EXCEEDS: f" by {size}"}
+        if self.reason:
+            more[STUCK] = f": {self.reason}"
         return self.kind + more.get(self.kind, "")
 
 
@@ -40,8 +44,26 @@ def fit_of(points: Points, number: int) -> Fit | None:
     if any(row["fits"] == 0 for row in unfit):
         return Fit(LACKS, lacking)
     if unfit:
-        return Fit(STUCK, lacking)
+        return Fit(STUCK, lacking, unfit[0].get("reason", ""))
     return Fit(FITS if all(row["fits"] for row in rows) else EXCEEDS, lacking)
+
+
+def nothing_ran(points: Points) -> Sentence:
+    """That there is no result, or that nothing fits and what would do at least."""
+    unfit = [n for n in range(len(points.profits)) if _least(points, n)]
+    if not unfit:
+        return Sentence("No point has a result.")
+    best = min(unfit, key=lambda n: _least(points, n))
+    axes = [name for name in points.axes if name != words.CAPACITY]
+    where = words.point(points.profits[best], ["policy", *axes])
+    who = "No dataflow" if any(points.runs) else "Nothing"
+    least = f"at least {_rounded(_least(points, best))} would do ({where})"
+    return Sentence(f"{who} fits into the memory of a PE: {least}.", (best,))
+
+
+def _least(points: Points, number: int) -> int:
+    """The least capacity that a point which does not fit would need; 0 if that is not known."""
+    return max((row.get("least_bytes") or 0 for row in points.unfit[number]), default=0)
 
 
 def fit_sentences(points: Points) -> Iterator[Sentence]:
@@ -77,7 +99,8 @@ def _told(points: Points, kind: str, flows: list[str], numbers: list[int], n_cas
     )
     text = words.capital(f"{who} {verb}{_where(points, numbers, n_cases)}")
     if kind == STUCK:
-        return f"{text}, as no PE could go on."
+        reason = next((f.reason for n in numbers if (f := fit_of(points, n)) and f.reason), "")
+        return f"{text}, as no PE could go on{f': {reason}' if reason else ''}."
     by = {LACKS: "each PE lacks", EXCEEDS: "by"}[kind]
     return f"{text}{':' if kind == LACKS else ','} {by} {_span(sizes)}."
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from simmpp.common.files import Row
+from simmpp.methods.columns import PLACE
 from simmpp.run import words
+from simmpp.run.rows import KNEES
 from simmpp.run.words import CAPACITY, UNBOUNDED
 from simmpp.sweeps.intervals import of_logarithms
 from simmpp.sweeps.winners.contest import makespan_ratios
-from simmpp.sweeps.winners.points import Points
+from simmpp.sweeps.winners.points import Points, points_of
 
 LONGER = (1.05, 2.0, 10.0)
 """How many times as long as with unbounded memory."""
+LEAST = "least_fitting_bytes"
+KNEES_BYTES = tuple(f"knee_bytes_{longer:g}" for longer in LONGER)
 
 
 class Knee(NamedTuple):
@@ -52,6 +57,33 @@ def _knee(points: Points, curve: dict[object, int]) -> Knee:
     }
     found = (next((size for size, of in longer.items() if of <= most), None) for most in LONGER)
     return Knee(reference, min(bounded), tuple(found))
+
+
+def knee_tables(
+    rows: Sequence[Row], further: tuple[str, ...], profits: Sequence[Row]
+) -> dict[str, tuple[list[Row], Sequence[str]]]:
+    """Rows and columns of ``knees.csv``; none of a sweep that does not go along the capacity."""
+    if CAPACITY not in further:
+        return {}
+    found = knee_rows(points_of(rows, further, profits))
+    return {KNEES: (found, knee_columns(further))}
+
+
+def knee_columns(further: Sequence[str]) -> tuple[str, ...]:
+    """The columns of ``knees.csv``; ``further`` are those of a sweep's keys."""
+    others = (name for name in further if name != CAPACITY)
+    return (*PLACE, *others, "policy", "compared_with", LEAST, *KNEES_BYTES)
+
+
+def knee_rows(points: Points) -> list[Row]:
+    """A row for each of them, in bytes; empty where no capacity of the sweep is enough."""
+    rows = []
+    for knee in knees(points):
+        row = points.profits[knee.reference]
+        sizes = ("" if size is None else size for size in knee.knee_bytes)
+        found = dict(zip(KNEES_BYTES, sizes, strict=True))
+        rows.append({**row, "compared_with": row[CAPACITY], LEAST: knee.least, **found})
+    return rows
 
 
 def knee_table(points: Points) -> list[Row]:

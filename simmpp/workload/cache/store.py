@@ -13,6 +13,7 @@ import os
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
+from functools import partial
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any
@@ -51,8 +52,18 @@ def workload_for(
     that can't be written, which costs only the next run's time.
     """
     check_scene(scene)
-    tell = notice or (lambda text: warnings.warn(text, CacheWarning, stacklevel=3))
-    digest = digest_of(scene, picture)
+    made = partial(trace, scene, picture, progress)
+    return kept(scene.name, digest_of(scene, picture), made, notice)
+
+
+def kept(
+    name: str,
+    digest: str,
+    make: Callable[[], Workload],
+    notice: Callable[[str], None] | None = None,
+) -> Workload:
+    """The workload of that digest, from the cache, else made and stored; ``notice`` as above."""
+    tell = notice or (lambda text: warnings.warn(text, CacheWarning, stacklevel=4))
     path = cached_path(digest)
     if path.exists():
         try:
@@ -60,10 +71,10 @@ def workload_for(
             if cached.digest != digest:
                 problem = "holds the workload of another scene or picture"
                 raise WorkloadError(problem, where=str(path))
-            return dataclasses.replace(cached, name=scene.name)
+            return dataclasses.replace(cached, name=name)
         except WorkloadError as error:
             tell(f"{error}; tracing it again")
-    workload = trace(scene, picture, progress)
+    workload = make()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         save(workload, path)

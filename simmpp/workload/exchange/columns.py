@@ -16,11 +16,15 @@ from simmpp.scene.nff_words import LARGEST
 WORKLOAD_SUFFIXES = (".parquet", ".npz")
 RAY_COLUMNS = (
     *("itinerary", "parent", "kind", "pixel", "hit", "distance"),
-    *("round", "home", "weight", "test_scale"),
+    *("round", "home", "weight", "test_scale", "deposit"),
 )
 OBJECT_COLUMNS = ("bytes", "kind", "triangles", "test_ps", "results", "x", "y", "z")
 ITINERARY = ("itinerary_offsets", "itinerary_objects")
 """The two columns of rays that hold one itinerary per row, as CSR."""
+DEPOSITS = "itinerary_deposits"
+"""A number for each entry of the itineraries."""
+DEPOSIT_OFFSETS = "deposit_offsets"
+"""Where these are lists of their own in the file: their offsets, which have to be the same."""
 Column = NDArray[Any]
 MOST_ROWS = 2**31 - 2
 """Rays, and objects, are numbered by int32; offsets have one more entry."""
@@ -121,7 +125,8 @@ def _what(column: Column) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """What a file holds; itineraries are two columns of rays: offsets (rows + 1) and objects."""
+    """What a file holds; itineraries are two columns of rays: offsets (rows + 1) and objects; with
+    deposits three."""
 
     rays: CheckedTable
     objects: CheckedTable

@@ -22,6 +22,7 @@ from simmpp.common.validate import require_kind
 from simmpp.workload.check import check
 from simmpp.workload.exchange import npz
 from simmpp.workload.exchange.columns import (
+    DEPOSITS,
     MOST_ROWS,
     OBJECT_COLUMNS,
     WORKLOAD_SUFFIXES,
@@ -86,6 +87,8 @@ def export_workload(workload: Workload, path: str | os.PathLike[str]) -> None:
     }
     if len(workload.ray_test_scales):
         rays["test_scale"] = workload.ray_test_scales
+    if len(workload.test_deposits):
+        rays[DEPOSITS] = workload.test_deposits / 2.0**32
     objects: dict[str, Column] = {
         "bytes": workload.object_bytes,
         "kind": np.array(OBJECT_KINDS)[workload.object_kinds],

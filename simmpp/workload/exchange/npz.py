@@ -10,6 +10,7 @@ import numpy as np
 from simmpp.common.errors import WorkloadError
 from simmpp.common.files import replaced
 from simmpp.workload.exchange.columns import (
+    DEPOSITS,
     ITINERARY,
     MOST_ROWS,
     OBJECT_COLUMNS,
@@ -36,12 +37,12 @@ def read(path: Path) -> Content:
             problem = f"array {name}: it has {array.ndim} dimensions, expected 1"
             raise WorkloadError(problem, where=where)
     picture = arrays.pop(PICTURE, None)
-    itineraries = {name: arrays.pop(name) for name in ITINERARY if name in arrays}
+    itineraries = {name: arrays.pop(name) for name in (*ITINERARY, DEPOSITS) if name in arrays}
     for name in arrays:
         if not name.startswith((RAY_PREFIX, OBJECT_PREFIX)):
             problem = f"array {name[:40]!r}: it is unknown{_hint(name)}"
             raise WorkloadError(problem, where=where)
-    if len(itineraries) < 2:
+    if not itineraries.keys() >= {*ITINERARY}:
         raise WorkloadError(f"expected the arrays {' and '.join(ITINERARY)}", where=where)
     n_rays = max(0, len(itineraries["itinerary_offsets"]) - 1)
     rays = _table(where, RAY_PREFIX, arrays, n_rays)
@@ -56,7 +57,7 @@ def read(path: Path) -> Content:
 def write(tables: Content, path: Path) -> None:
     """Write both tables into one uncompressed file."""
     arrays = dict(tables.rays.columns)
-    named = {name: arrays.pop(name) for name in ITINERARY}
+    named = {name: arrays.pop(name) for name in (*ITINERARY, DEPOSITS) if name in arrays}
     for prefix, columns in ((RAY_PREFIX, arrays), (OBJECT_PREFIX, tables.objects.columns)):
         named |= {prefix + name: column for name, column in columns.items()}
     if tables.picture is not None:
@@ -67,7 +68,7 @@ def write(tables: Content, path: Path) -> None:
 
 def _hint(name: str) -> str:
     """What it may have been meant for."""
-    known = [PICTURE, *ITINERARY, *(RAY_PREFIX + n for n in RAY_COLUMNS[1:])]
+    known = [PICTURE, *ITINERARY, DEPOSITS, *(RAY_PREFIX + n for n in RAY_COLUMNS[1:])]
     known += [OBJECT_PREFIX + column for column in OBJECT_COLUMNS]
     near = get_close_matches(name.lower(), known, n=1)
     return f": did you mean {near[0]}?" if near else ""

@@ -9,11 +9,14 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
+from numpy.typing import NDArray
 from pyarrow import parquet
 
 from simmpp.common.errors import WorkloadError
 from simmpp.common.files import refuse_special, replaced
 from simmpp.workload.exchange.columns import (
+    DEPOSIT_OFFSETS,
+    DEPOSITS,
     LONGEST_WORD,
     MOST_ROWS,
     OBJECT_COLUMNS,
@@ -63,7 +66,11 @@ def write(tables: Content, path: Path) -> None:
     """Write both tables; words as dictionaries, itineraries as lists."""
     columns = dict(tables.rays.columns)
     offsets, objects = columns.pop("itinerary_offsets"), columns.pop("itinerary_objects")
-    rays = pa.table(columns | {"itinerary": pa.LargeListArray.from_arrays(offsets, objects)})
+    lists = {"itinerary": objects}
+    if DEPOSITS in columns:
+        lists["deposit"] = columns.pop(DEPOSITS)
+    of_rays = {n: pa.LargeListArray.from_arrays(offsets, all_) for n, all_ in lists.items()}
+    rays = pa.table(columns | of_rays)
     if tables.picture is not None:
         rays = rays.replace_schema_metadata({PICTURE: " ".join(map(str, tables.picture))})
     for table, name in ((pa.table(dict(tables.objects.columns)), objects_path(path)), (rays, path)):
@@ -85,6 +92,8 @@ def _table(path: Path, known: Sequence[str]) -> tuple[CheckedTable, dict[bytes, 
         chunk = data[name].combine_chunks()
         if name == "itinerary":
             table.columns.update(_itineraries(table, chunk))
+        elif name == "deposit" and known is RAY_COLUMNS:
+            table.columns.update(_deposits(table, chunk))
         else:
             table.columns[name] = _column(table, name, chunk)
     return table, dict(data.schema.metadata or {})
@@ -160,19 +169,36 @@ def _refuse_nulls(table: CheckedTable, name: str, array: pa.Array) -> None:
 
 
 def _itineraries(table: CheckedTable, array: pa.Array) -> dict[str, Column]:
-    kind = array.type
-    if not pa.types.is_list(kind) and not pa.types.is_large_list(kind):
-        table.fail("itinerary", f"it holds {kind}, expected lists of integers")
-    _refuse_nulls(table, "itinerary", array)
-    objects, lengths = array.flatten(), pc.list_value_length(array)
-    offsets = np.concatenate([[0], np.cumsum(lengths.to_numpy(zero_copy_only=False))])
-    if objects.null_count:
-        entry = int(np.argmax(objects.is_null().to_numpy(zero_copy_only=False)))
-        row = int(np.searchsorted(offsets, entry, side="right")) - 1
-        table.fail("itinerary", "an object is missing (null)", row)
+    offsets, objects = _lists(table, "itinerary", array, "integers")
     if not len(objects):
         objects = pa.array([], pa.int32())  # a list of nothing may be a list of any type
     return {
-        "itinerary_offsets": offsets.astype(np.int64),
+        "itinerary_offsets": offsets,
         "itinerary_objects": objects.to_numpy(zero_copy_only=False),
     }
+
+
+def _deposits(table: CheckedTable, array: pa.Array) -> dict[str, Column]:
+    """With their offsets, which have to be the itineraries'."""
+    offsets, numbers = _lists(table, "deposit", array, "numbers")
+    if not len(numbers):
+        numbers = pa.array([], pa.float64())
+    return {DEPOSITS: numbers.to_numpy(zero_copy_only=False), DEPOSIT_OFFSETS: offsets}
+
+
+def _lists(
+    table: CheckedTable, name: str, array: pa.Array, what: str
+) -> tuple[NDArray[np.int64], pa.Array]:
+    """A list in each row, as CSR."""
+    kind = array.type
+    if not pa.types.is_list(kind) and not pa.types.is_large_list(kind):
+        table.fail(name, f"it holds {kind}, expected lists of {what}")
+    _refuse_nulls(table, name, array)
+    values, lengths = array.flatten(), pc.list_value_length(array)
+    offsets = np.concatenate([[0], np.cumsum(lengths.to_numpy(zero_copy_only=False))])
+    if values.null_count:
+        entry = int(np.argmax(values.is_null().to_numpy(zero_copy_only=False)))
+        row = int(np.searchsorted(offsets, entry, side="right")) - 1
+        missing = "an object" if what == "integers" else "a number"
+        table.fail(name, f"{missing} is missing (null)", row)
+    return offsets.astype(np.int64), values

@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.workload.exchange.columns import ITINERARY, RAY_COLUMNS, CheckedTable
+from simmpp.workload.exchange.columns import (
+    DEPOSIT_OFFSETS,
+    DEPOSITS,
+    ITINERARY,
+    RAY_COLUMNS,
+    CheckedTable,
+)
 from simmpp.workload.exchange.numbering import by_generation, first_repeat, regrouped, row_in_cycle
 from simmpp.workload.exchange.roots import roots_of
 from simmpp.workload.workload import (
@@ -21,16 +27,19 @@ from simmpp.workload.workload import (
 )
 
 Ints = NDArray[np.int64]
+MOST_DEPOSIT = 2**20
+"""So that float64 tells one unit from the next."""
 
 
 def rays_of(table: CheckedTable, n_objects: int) -> dict[str, NDArray[Any]]:
     """The fields of a workload that hold rays; raises WorkloadError for what makes no sense."""
-    table.known((*RAY_COLUMNS, *ITINERARY), required=ITINERARY)
+    table.known((*RAY_COLUMNS, *ITINERARY, DEPOSITS, DEPOSIT_OFFSETS), required=ITINERARY)
     n = table.rows
     parents = table.integers("parent", -1, n - 1, -1, f"-1 or a row from 0 to {n - 1}")
     kinds = table.choices("kind", RAY_KINDS, np.where(parents < 0, PRIMARY, REFLECTED))
     _check_kinds(table, parents, kinds)
     offsets, objects = _itineraries(table, n_objects, kinds)
+    deposits = _deposits(table, offsets)
     scales = table.integers("test_scale", 0, MOST_TEST_SCALE, 0).astype(np.uint8)
     n_children = np.bincount(parents[parents >= 0], minlength=n)
     hits = _hits(table, offsets, objects, n_children, n_objects)
@@ -51,6 +60,7 @@ def rays_of(table: CheckedTable, n_objects: int) -> dict[str, NDArray[Any]]:
         "itinerary_offsets": new_offsets,
         "itinerary_objects": objects[entries].astype(np.int32),
         **({"ray_test_scales": scales[order]} if scales.any() else {}),
+        **({"test_deposits": deposits[entries]} if len(deposits) else {}),
         **roots_of(table, parents, order, roots, n_objects),
     }
 
@@ -90,6 +100,26 @@ def _itineraries(
     if row >= 0:
         table.fail("itinerary", f"object {twice} occurs twice: expected each once", row)
     return offsets, objects
+
+
+def _deposits(table: CheckedTable, offsets: Ints) -> Ints:
+    """What each entry of the itineraries deposits, in units of 2^-32; (0,) where it is not told."""
+    if DEPOSITS not in table.columns:
+        return np.zeros(0, np.int64)
+    numbers = table.columns[DEPOSITS]
+    own = table.columns.get(DEPOSIT_OFFSETS, offsets)
+    if len(numbers) != offsets[-1] or (own != offsets).any():
+        row = int(np.argmax(np.append(own[1:] != offsets[1:], True))) % max(table.rows, 1)
+        table.fail("deposit", "expected a number for each object of the itinerary", row)
+    if numbers.dtype.kind not in "iuf":
+        table.fail("deposit", f"it holds {numbers.dtype}, expected numbers")
+    wrong = ~((numbers >= 0) & (numbers <= MOST_DEPOSIT))
+    if wrong.any():
+        entry = int(np.argmax(wrong))
+        row = int(np.searchsorted(offsets, entry, side="right")) - 1
+        expected = f"a number from 0 to {MOST_DEPOSIT}"
+        table.fail("deposit", f"value {numbers[entry]}: expected {expected}", row)
+    return np.rint(numbers.astype(np.float64) * 2.0**32).astype(np.int64)
 
 
 def _hits(

@@ -19,6 +19,7 @@ MOST_RAYS = 2**31 - 1
 """Ray numbers are int32."""
 FEW = 1024
 """Paths from which the rays of all are estimated, within some per cent."""
+LOWER = "a lower resolution"
 GOLDEN = 2654435769
 """2^32 over the golden ratio: its multiples lie evenly, and on no rows or columns of a picture."""
 
@@ -56,7 +57,7 @@ def require_numbers(n_rays: int, name: str) -> None:
 
 def require_memory(n_primaries: int, name: str) -> None:
     """Refuse at once what would end in the system's killing the process, minutes later."""
-    _refuse(n_primaries * BYTES_PER_RAY, f"{n_primaries} primary rays take", "", name)
+    refuse(n_primaries * BYTES_PER_RAY, f"{n_primaries} primary rays take", LOWER, name)
 
 
 def require_room(n_roots: int, few: list[Recorded], name: str) -> None:
@@ -69,15 +70,15 @@ def require_room(n_roots: int, few: list[Recorded], name: str) -> None:
         problem = f"{n_roots} paths have about {n_rays} rays, expected at most {MOST_RAYS}"
         raise ConfigError(f"{problem}: fewer samples, or a lower resolution", where=name)
     size, takes = n_rays * BYTES_PER_RAY + n_tests * BYTES_PER_TEST, f"{n_roots} paths take about"
-    _refuse(size, takes, "fewer samples, or ", name)
+    refuse(size, takes, f"fewer samples, or {LOWER}", name)
 
 
-def _refuse(size_bytes: int, takes: str, other: str, name: str) -> None:
+def refuse(size_bytes: int, takes: str, expected: str, name: str) -> None:
     """Raise ConfigError for more bytes than the machine has."""
     memory_bytes = _bytes_there_are()
     if memory_bytes is not None and size_bytes > memory_bytes:
         there = f"{takes} {format_bytes(size_bytes)}, there are {format_bytes(memory_bytes)}"
-        raise ConfigError(f"{there}: expected {other}a lower resolution", where=name)
+        raise ConfigError(f"{there}: expected {expected}", where=name)
 
 
 def _bytes_there_are() -> int | None:

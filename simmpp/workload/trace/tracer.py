@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -35,6 +32,7 @@ from simmpp.workload.trace.room import (
     require_numbers,
     require_room,
 )
+from simmpp.workload.trace.threads import Run, mapping
 from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536
@@ -42,8 +40,6 @@ BATCH = 65536
 Number = TypeVar("Number", bound=np.generic)
 Progress = Callable[[int, int], None]
 """Is told the rays done and the rays known so far."""
-Run = Callable[..., Iterable[Any]]
-"""Maps a function on lists, as ``map`` does."""
 
 
 class Tracing(NamedTuple):
@@ -54,6 +50,16 @@ class Tracing(NamedTuple):
     rules: Rules
     name: str
     """The scene's, for errors."""
+
+
+class Made(NamedTuple):
+    """What a workload is called, and the shape of its primary rays."""
+
+    name: str
+    digest: str
+    shape: tuple[int, int]
+    """Rows and columns."""
+    passes: int = 1
 
 
 def trace(
@@ -90,31 +96,16 @@ def trace(
     tracing = Tracing(geometry, intersector(geometry), rules, scene.name)
     if picture.render == PATH:
         rays = drawn_rays(scene, picture, frame, few_roots(picture.n_roots))
-        require_room(picture.n_roots, _recorded(tracing, rays, map), scene.name)
+        require_room(picture.n_roots, recorded(tracing, rays, map), scene.name)
     rays = first_generation(scene, picture, frame)
-    with _threads(threads) as run:
-        batches = _recorded(tracing, rays, run, progress)
+    with mapping(threads) as run:
+        batches = recorded(tracing, rays, run, progress)
     del rays
-    return _workload(scene, picture, geometry, frame, batches)
+    made = Made(scene.name, digest_of(scene, picture), picture.shape, picture.passes)
+    return workload_of(scene, made, geometry, frame, batches)
 
 
-@contextmanager
-def _threads(threads: int | None) -> Iterator[Run]:
-    """What maps a function on batches, in order: this thread, or as many as asked for."""
-    if threads is None:
-        only = getattr(os, "sched_getaffinity", None)
-        threads = len(only(0)) if only else os.cpu_count() or 1
-    if threads == 1:
-        yield map
-        return
-    pool = ThreadPoolExecutor(threads)
-    try:
-        yield pool.map
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
-def _recorded(
+def recorded(
     tracing: Tracing, rays: RayBatch, run: Run, progress: Progress | None = None
 ) -> list[Recorded]:
     """What is recorded of ``rays`` and of all that they spawn, generation by generation."""
@@ -162,22 +153,28 @@ def _intersected(
     return find_itineraries(geometry.shapes, rays, claims)
 
 
-def _workload(
-    scene: Scene, picture: Picture, geometry: Geometry, frame: Frame, batches: list[Recorded]
+def workload_of(
+    scene: Scene,
+    made: Made,
+    geometry: Geometry,
+    frame: Frame,
+    batches: list[Recorded],
+    **extras: NDArray[Any],
 ) -> Workload:
+    """The workload of all ``batches``, which are used up; ``extras`` are optional arrays of it."""
     lists: list[list[Any]] = [list(column) for column in zip(*batches, strict=True)]
     batches.clear()  # so that _emptied frees what it has copied
     kinds, parents, n_children, hits, distances, n_tests, itineraries = map(_emptied, lists)
     objects = columns_of(scene)
-    bounds = boxes_of(objects, frame.origin)
+    bounds, n_roots = boxes_of(objects, frame.origin), made.shape[0] * made.shape[1] * made.passes
     return frozen(
         Workload(
-            name=scene.name,
-            digest=digest_of(scene, picture),
-            picture=picture.shape,
+            name=made.name,
+            digest=made.digest,
+            picture=made.shape,
             kinds=kinds,
             parents=parents,
-            child_offsets=np.cumsum(np.insert(n_children, 0, picture.n_roots), dtype=np.int32),
+            child_offsets=np.cumsum(np.insert(n_children, 0, n_roots), dtype=np.int32),
             pixels=pixels_of(parents),
             hits=hits,
             hit_distances=frame.scene_lengths(distances),
@@ -188,7 +185,8 @@ def _workload(
             object_triangles=geometry.n_triangles,
             object_bytes=sizes_on_the_wire(objects),
             object_centroids=frame.rounded(bounds.mean(axis=1)),
-            samples=picture.passes,
+            samples=made.passes,
+            **extras,
         )
     )
 

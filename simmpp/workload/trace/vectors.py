@@ -53,3 +53,13 @@ def normalised(a: Vector) -> Vector:
     # Three divisions, not one and three products: each component is then the nearest float64.
     length = math.sqrt(dot(a, a))
     return a[0] / length, a[1] / length, a[2] / length
+
+
+@kernel
+def basis_across(n: Vector) -> tuple[Vector, Vector]:
+    """Two vectors across ``n`` (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
+    sign = math.copysign(1.0, n[2])
+    a = -1.0 / (sign + n[2])
+    b = n[0] * n[1] * a
+    across = 1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]
+    return across, (b, sign + n[1] * n[1] * a, -n[1])

@@ -6,6 +6,7 @@ these find must be what the workload records, ray by ray, and give the sequentia
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from simmpp.common.compiled import njit
 from simmpp.scene.scene import Scene
 from simmpp.workload.picture import Picture
 from simmpp.workload.trace.exact import entry, hit_object, ray_of
+from simmpp.workload.trace.frame import Frame
 from simmpp.workload.trace.geometry import Geometry
 from simmpp.workload.trace.itineraries import Work, work_for
 from simmpp.workload.trace.ray_batch import RayBatch
@@ -66,15 +68,36 @@ def verify(
 
 def _compared(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> Difference | None:
     workload = replayed.workload
-    problem = _wrong_test(workload, tested_rays, tested_objects)
+    problem = wrong_test(workload, tested_rays, tested_objects)
     hits, distances = hits_of_tests(replayed, tested_rays, tested_objects)
-    wrong = (hits != workload.hits) | (distances != workload.hit_distances)
-    if problem is None and wrong.any():
-        ray = int(wrong.argmax())
-        obtained = f"its tests hit object {hits[ray]} at {distances[ray]!r}"
-        recorded = f"{workload.hits[ray]} at {workload.hit_distances[ray]!r} is recorded"
-        problem = ray, f"ray {ray}: {obtained}, {recorded}"
+    problem = problem or _wrong_hit(workload, hits, distances)
     return _difference(replayed, hits, problem)
+
+
+def problem_of_roots(
+    workload: Workload,
+    geometry: Geometry,
+    frame: Frame,
+    rays: RayBatch,
+    tested_rays: Ints,
+    tested_objects: Ints,
+) -> str:
+    """What is wrong with the tests of ``rays`` that are all roots and spawn nothing; else empty."""
+    found = _hits_of_tests(workload, geometry, [(0, rays)], tested_rays, tested_objects)
+    wrong = _wrong_hit(workload, found[0], frame.scene_lengths(found[1]))
+    _, problem = wrong_test(workload, tested_rays, tested_objects) or wrong or (0, "")
+    return problem
+
+
+def _wrong_hit(workload: Workload, hits: Ints, distances: Floats) -> tuple[int, str] | None:
+    """The first ray whose hit is not the recorded one; None if all are."""
+    wrong = (hits != workload.hits) | (distances != workload.hit_distances)
+    if not wrong.any():
+        return None
+    ray = int(wrong.argmax())
+    obtained = f"its tests hit object {hits[ray]} at {distances[ray]!r}"
+    recorded = f"{workload.hits[ray]} at {workload.hit_distances[ray]!r} is recorded"
+    return ray, f"ray {ray}: {obtained}, {recorded}"
 
 
 def hits_of_tests(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> tuple[Ints, Floats]:
@@ -85,17 +108,30 @@ def hits_of_tests(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> 
     answer of a ray is meaningful if its ancestors' hits are the recorded ones. Tests of rays and
     objects that do not exist find nothing.
     """
-    workload = replayed.workload
+    workload, generations = replayed.workload, recorded_generations(replayed)
+    tests = tested_rays, tested_objects
+    hits, distances = _hits_of_tests(workload, replayed.geometry, generations, *tests)
+    return hits, replayed.frame.scene_lengths(distances)
+
+
+def _hits_of_tests(
+    workload: Workload,
+    geometry: Geometry,
+    generations: Iterable[tuple[int, RayBatch]],
+    tested_rays: Ints,
+    tested_objects: Ints,
+) -> tuple[Ints, Floats]:
+    """The same, normalised; ``generations`` as :func:`~.replay.recorded_generations` has them."""
     hits, distances = np.full(workload.n_rays, -1, np.int32), np.full(workload.n_rays, np.inf)
-    places, work = np.full(workload.n_rays, np.inf), work_for(replayed.geometry.shapes)
+    places, work = np.full(workload.n_rays, np.inf), work_for(geometry.shapes)
     exists = (tested_objects >= 0) & (tested_objects < workload.n_objects)
-    for start, rays in recorded_generations(replayed):
+    for start, rays in generations:
         stop = start + len(rays.kinds)
         mine = np.flatnonzero(exists & (tested_rays >= start) & (tested_rays < stop))
         # By object, so that its triangles stay in the CPU's cache from one test to the next.
         by_object = mine[np.argsort(tested_objects[mine], kind="stable")]
         _intersect_pairs(
-            replayed.geometry,
+            geometry,
             rays,
             tested_rays[by_object] - np.int32(start),
             tested_objects[by_object],
@@ -104,7 +140,7 @@ def hits_of_tests(replayed: Traced, tested_rays: Ints, tested_objects: Ints) -> 
             places[start:stop],
             work,
         )
-    return hits, replayed.frame.scene_lengths(distances)
+    return hits, distances
 
 
 @njit
@@ -131,7 +167,7 @@ def _intersect_pairs(
             hits[i], distances[i], places[i] = o, t, place
 
 
-def _wrong_test(
+def wrong_test(
     workload: Workload, tested_rays: Ints, tested_objects: Ints
 ) -> tuple[int, str] | None:
     """The first ray that misses a test of its itinerary or has one too many; None if none does."""

@@ -64,7 +64,11 @@ def test_a_capacity_that_can_not_be_is_refused_with_the_least(capacity: str, sai
 @pytest.mark.parametrize(
     ("machine", "policy", "said"),
     [
-        ({"service": "thread"}, {}, "memory.capacity: expected machine.service pe beside it"),
+        (
+            {"service": "thread"},
+            {},
+            "memory.capacity: expected machine.service pe beside it, got thread",
+        ),
         ({}, {"merge_requests": False}, "memory.capacity: expected merge_requests: true"),
     ],
 )
@@ -77,6 +81,22 @@ def test_what_can_not_be_combined_is_refused(
     here = simmpp.make_machine("t3e", machine, processors=4)
     with pytest.raises(ConfigError, match=said):
         simmpp.simulate(workload, here, placement, simmpp.PolicyParameters("object", **policy))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("machine.service=nic", "value '1 MB': expected machine.service pe beside it, got nic"),
+        ("policy.merge_requests=false", "expected merge_requests: true beside it, for object"),
+    ],
+)
+def test_commands_refuse_it_with_its_place_before_anything_runs(more: str, said: str) -> None:
+    given = ("memory.capacity=1 MB", more)
+    config = config_from_mapping(SETTINGS | {"policy": ["object"]}, given)
+    with pytest.raises(ConfigError, match=f"^--set memory.capacity: .*{said}"):
+        make_point(config, workload_of(config))
+    with pytest.raises(ConfigError, match=f"^--set memory.capacity: .*{said}"):
+        plan_of(config)
 
 
 def test_run_says_what_fits_and_what_it_needs() -> None:

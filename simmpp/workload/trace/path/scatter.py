@@ -16,7 +16,7 @@ from simmpp.workload.trace.exact import Floats, Ray
 from simmpp.workload.trace.path.philox import numbers
 from simmpp.workload.trace.path.rules import Paths
 from simmpp.workload.trace.surface import Surface, reflected, refracted
-from simmpp.workload.trace.vectors import moved, normalised, times
+from simmpp.workload.trace.vectors import basis_across, moved, normalised, times
 from simmpp.workload.workload import DIFFUSE, REFLECTED, REFRACTED
 
 SURVIVORS = 0.95
@@ -89,15 +89,5 @@ def _cosine(seed: int, root: int, event: int, normal: Vector) -> Vector:
             x, y = 2.0 * c - 1.0, 2.0 * d - 1.0
             s = x * x + y * y
         dimension += 1
-    across, along = _basis(normal)
+    across, along = basis_across(normal)
     return normalised(moved(moved(times(math.sqrt(1.0 - s), normal), x, across), y, along))
-
-
-@kernel
-def _basis(n: Vector) -> tuple[Vector, Vector]:
-    """Two vectors across ``n`` (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
-    sign = math.copysign(1.0, n[2])
-    a = -1.0 / (sign + n[2])
-    b = n[0] * n[1] * a
-    across = 1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]
-    return across, (b, sign + n[1] * n[1] * a, -n[1])

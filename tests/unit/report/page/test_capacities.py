@@ -22,7 +22,7 @@ from simmpp.report.page.report import report_of, write_page
 from simmpp.sweeps.profits import best_policy
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.winners.fit_table import fit_table
-from simmpp.sweeps.winners.knee import knee_table, knees
+from simmpp.sweeps.winners.knee import KNEES_BYTES, knee_table, knee_tables, knees
 from simmpp.sweeps.winners.points import Points, points_of
 
 GB = 10**9
@@ -66,15 +66,30 @@ def test_where_nothing_fits_the_answer_is_what_is_lacking() -> None:
     some = [bounded(policy, None, "4 GB", processors=nb) for policy in TIMES for nb in (4, 8)]
     told = [sentence.text for sentence in answer_of(some, (CAPACITY,))]
     assert told == [
-        "No point has a result.",
+        "Nothing fits into the memory of a PE: at least 7 GB would do (object dataflow, 4 PEs).",
         "Nothing fits in all 2 cases (4 to 8 PEs): each PE lacks 3 GB.",
     ]
+
+
+def test_where_no_dataflow_fits_but_the_scene_does_the_least_of_a_dataflow_is_said() -> None:
+    some = [
+        bounded("replicated", 50, "4 GB"),
+        *(bounded(p, None, "4 GB") for p in ("object", "ray")),
+    ]
+    some[2]["least_bytes"] = 5 * GB
+    told = [sentence.text for sentence in answer_of(some, (CAPACITY,))]
+    assert told[0] == (
+        "No dataflow fits into the memory of a PE: at least 5 GB would do (ray dataflow)."
+    )
 
 
 @pytest.mark.parametrize(
     ("cells", "sentence"),
     [
-        ({"infeasible": 1}, "Object dataflow came to no end, as no PE could go on."),
+        (
+            {"infeasible": 1, "reason": "PE 1 is stuck"},
+            "Object dataflow came to no end, as no PE could go on: PE 1 is stuck.",
+        ),
         (
             {"fits": 0, "exceeds_bytes": 1_234_567, "makespan_ps": 7},
             "Object dataflow held more than a PE has, by 1.23 MB.",
@@ -103,6 +118,11 @@ def test_a_knee_is_the_least_capacity_with_at_most_so_long_a_makespan() -> None:
         "ray": (4 * GB, (4 * GB,) * 3),
     }
     assert {line["compared with"] for line in knee_table(of)} == {"unbounded memory"}
+    written, _ = knee_tables(rows(), (CAPACITY,), [])["knees.csv"]
+    (of_object,) = (line for line in written if line["policy"] == "object")
+    assert [of_object[name] for name in KNEES_BYTES] == [32 * GB, 16 * GB, 8 * GB]
+    assert (of_object["compared_with"], of_object["least_fitting_bytes"]) == ("none", 8 * GB)
+    assert knee_tables(rows(), ("point",), []) == {}
     bare = points([r for r in rows() if r[CAPACITY] != "null"])
     assert {line["compared with"] for line in knee_table(bare)} == {"32 GB per PE"}
 
@@ -176,6 +196,14 @@ def test_the_page_shows_what_fits_and_folders_are_compared(of: list[Row], tmp_pa
     assert "What fits into memory" in page and "does not fit: lacks 3 GB" in page
     (pair,) = compared(folders)
     assert pair.sweeps.common == 15 and not pair.sweeps.changes
+
+
+def test_why_a_run_came_to_no_end_is_read_where_its_row_is_shown(tmp_path: Path) -> None:
+    stuck = bounded("object", None, "4 GB") | {"fits": 1, "exceeds_bytes": 0, "infeasible": 1}
+    stuck |= {"reason": "PE 1 is stuck with 2 rays, of 7 that are left"}
+    folder = written(tmp_path, [stuck, bounded("ray", 5, "4 GB")], (CAPACITY,), (BOUNDED,))
+    page = write_page(report_of(read_folder(folder))).read_text()
+    assert "stuck: PE 1 is stuck with 2 rays, of 7 that are left" in page
 
 
 def test_a_row_without_a_result_has_to_say_why(tmp_path: Path) -> None:

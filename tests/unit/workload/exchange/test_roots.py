@@ -49,7 +49,7 @@ def test_what_is_written_is_read(tmp_path: Path, suffix: str) -> None:
         export_workload(told, path)
         assert_same(import_workload(path), told)
         seen |= {name for name in OPTIONAL if len(getattr(told, name))}
-    assert seen == set(OPTIONAL) - {"object_test_ps"}
+    assert seen == set(OPTIONAL) - {"object_test_ps", "round_residuals"}
 
 
 def test_only_what_is_used_is_written(tmp_path: Path) -> None:
@@ -163,3 +163,28 @@ def test_a_workload_that_contradicts_itself(
     with pytest.raises(WorkloadError):
         check(workload, "a")
     assert FORM_FACTOR > SHADOW
+
+
+@pytest.mark.parametrize(
+    ("deposits", "problem"),
+    [
+        ([[1.5, 2], [0.25]], None),
+        ([[1.5], [0.25]], "column deposit, row 0: expected a number for each object"),
+        ([[1.5], [0.25, 2]], "column deposit, row 0: expected a number for each object"),
+        ([[1, 2], [-1]], "column deposit, row 1: value -1: expected a number from 0 to"),
+        ([[1, 2], [None]], r"column deposit, row 1: a number is missing \(null\)"),
+        ([1, 2], "column deposit: it holds int64, expected lists of numbers"),
+    ],
+)
+def test_each_test_may_say_what_it_deposits(
+    tmp_path: Path, deposits: list[object], problem: str | None
+) -> None:
+    path = tmp_path / "a.parquet"
+    rays = {"itinerary": [[1, 0], [1]], "deposit": deposits, "pixel": [1, 0]}
+    parquet.write_table(pa.table(rays), path)
+    parquet.write_table(pa.table({"bytes": [1, 1]}), tmp_path / "a.objects.parquet")
+    if problem is None:
+        assert import_workload(path).test_deposits.tolist() == [1 << 30, 3 << 31, 2 << 32]
+    else:
+        with pytest.raises(WorkloadError, match=problem):
+            import_workload(path)

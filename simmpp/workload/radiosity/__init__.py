@@ -1,0 +1,1 @@
+"""Radiosity: matt patches light each other, by rays that patches send out."""
