@@ -32,7 +32,7 @@ from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking
 
 FIRST_EVENTS, MOST_EVENTS = 1 << 10, 1 << 20
-"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: twice as many each
+"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: four times as many each
 time, until that takes CALL_S; half as many if it takes twice as long, as hooks may be slow."""
 CALL_S = 0.1
 FINISHED, PAUSED, FULL, STARVED = range(4)
@@ -89,7 +89,7 @@ class CompiledRun:
 def _as_many(n_events: int, took_s: float) -> int:
     """How many events are handled at the next call."""
     if took_s < CALL_S:
-        return min(2 * n_events, MOST_EVENTS)
+        return min(4 * n_events, MOST_EVENTS)
     return max(n_events // 2, 1) if took_s > 2 * CALL_S else n_events
 
 

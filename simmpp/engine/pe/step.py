@@ -122,7 +122,10 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
-    """Make up to a quantum of tests on ready rays; returns the end of that work."""
+    """Make up to a quantum of tests on ready rays; returns the end of that work.
+
+    What a test finds is in the workload.
+    """
     pe = pes(s)[me]
     begin_ps = now_ps + s.probe_ps + s.compute_startup_ps
     pace, cost_ps = pace_of(s, me, now_ps), 0
@@ -145,8 +148,13 @@ def compute(s: Run, me: int, now_ps: int) -> int:
                 pe.cut = 1
                 break
             cost_ps += cost_of_test_ps(s, ray, obj)
-            _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
+            if s.record_tests:
+                _note_test(s, ray, obj)
             tests, at = tests + 1, at + 1
+            s.tests += 1
+            r.tested += 1
+            if r.granted or s.keeps:
+                _use(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
         else:
             cost_ps += s.ray_ps
             pop_ready(s, me)
@@ -181,25 +189,25 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
 
 
 @kernel
-def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
-    """One ray-object intersection, which is over now; what it finds is in the workload."""
-    if s.record_tests:
-        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
-    s.tests += 1
+def _note_test(s: Run, ray: int, obj: int) -> None:
+    tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+
+
+@kernel
+def _use(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
+    """A test is over against an object that may have been fetched: it is used, or let go."""
     r = rays(s)[ray]
-    r.tested += 1
-    if r.granted or s.keeps:
-        goes_on = r.granted != 0 and _needs_again(s, ray, obj)
-        miss_row = find(misses(s), me * s.n_objects + obj)
-        if miss_row != NONE:  # a resident object has none
-            touch(s, me, miss_row)
-            if r.granted == 1 and not goes_on:
-                unpin(s, me, miss_row, obj, now_ps)
-        if goes_on:  # what was granted for this test is for the next one as well
-            return
-        if r.granted == ESCAPED:
-            rooms(s)[me].stuck = NONE
-        r.granted = 0
+    goes_on = r.granted != 0 and _needs_again(s, ray, obj)
+    miss_row = find(misses(s), me * s.n_objects + obj)
+    if miss_row != NONE:  # a resident object has none
+        touch(s, me, miss_row)
+        if r.granted == 1 and not goes_on:
+            unpin(s, me, miss_row, obj, now_ps)
+    if goes_on:  # what was granted for this test is for the next one as well
+        return
+    if r.granted == ESCAPED:
+        rooms(s)[me].stuck = NONE
+    r.granted = 0
 
 
 @kernel
