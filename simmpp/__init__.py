@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from simmpp.placement.placement import Cells, Memory, PlacementRules
     from simmpp.policy.parameters import PolicyParameters
     from simmpp.run.profit import profits
+    from simmpp.studies.advise.advice import Advice
+    from simmpp.studies.advise.advise import advise
     from simmpp.studies.curve.estimate import estimate
     from simmpp.sweeps.sweep import SweepResult
     from simmpp.sweeps.sweep import run_sweep as sweep
@@ -53,6 +55,7 @@ else:  # type checkers would take any name to be there
 
 
 _HOME = {
+    "Advice": "simmpp.studies.advise.advice:Advice",
     "Cells": "simmpp.placement.placement:Cells",
     "Memory": "simmpp.placement.placement:Memory",
     "Picture": "simmpp.workload.picture:Picture",
@@ -60,6 +63,7 @@ _HOME = {
     "PolicyParameters": "simmpp.policy.parameters:PolicyParameters",
     "Result": "simmpp.engine.result:Result",
     "SweepResult": "simmpp.sweeps.sweep:SweepResult",
+    "advise": "simmpp.studies.advise.advise:advise",
     "estimate": "simmpp.studies.curve.estimate:estimate",
     "export_workload": "simmpp.workload.exchange.exchange:export_workload",
     "import_workload": "simmpp.workload.exchange.exchange:import_workload",
@@ -73,6 +77,7 @@ _HOME = {
 }
 
 __all__ = [
+    "Advice",
     "Cells",
     "Memory",
     "Picture",
@@ -80,6 +85,7 @@ __all__ = [
     "PolicyParameters",
     "Result",
     "SweepResult",
+    "advise",
     "estimate",
     "export_workload",
     "import_workload",

@@ -19,6 +19,7 @@ COMMANDS = {
     "run": "Compare dataflow policies at one point.",
     "sweep": "Simulate every combination of the values under the key sweep.",
     "report": "Make a page of what sweep, run, bench or reproduce wrote.",
+    "advise": "Say which policy to use on how many nodes.",
     "compare": "Compare the rows of two folders, point by point.",
     "check": "Compare a sweep with its baseline; exit with 1 if it moved.",
     "model": "Say which dataflow the paper's analytical model expects to win.",

@@ -22,7 +22,7 @@ MARK, LOCK = ".simmpp", ".simmpp.lock"
 PATIENCE_S = 0.2
 """Whoever looks whether others are at work holds the lock as well, for less than that."""
 RUN, SWEEP, BENCH, REPRODUCTION = "run", "sweep", "bench", "reproduction"
-CHECK, BASELINE, MODEL = "check", "baseline", "model"
+CHECK, BASELINE, MODEL, ADVICE = "check", "baseline", "model", "advice"
 """Kinds of folders."""
 SIGNS = {
     "bench.csv": BENCH,
@@ -34,6 +34,7 @@ SIGNS = {
     "run.json:policies": RUN,
     "run.json:points": SWEEP,
     "figure2.csv": MODEL,
+    "advise.csv": ADVICE,
     "results.csv": "table of others",
 }
 """Files, with keys of JSON, by which an unmarked folder is known; the first that is there decides.

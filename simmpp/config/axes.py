@@ -14,7 +14,7 @@ from simmpp.common.units import shown
 POINTS = "points"
 """The axis of named points; also the name of their column, less the plural."""
 NAME = "name"
-UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "check")
+UNSWEPT = ("sweep", "seeds", "tolerance", "max_seeds", "refine", "engine", "check", "advise")
 """Keys that say how a sweep is made, and so can't be swept."""
 MOST_VALUES = 1000
 """Values of one axis."""

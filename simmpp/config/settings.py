@@ -28,6 +28,7 @@ from simmpp.common.strict import (
 )
 from simmpp.common.units import share, shown
 from simmpp.common.validate import MOST_SEED
+from simmpp.config.advice import AdviseSettings
 from simmpp.config.axes import axes_of
 from simmpp.engine.simulate import DEFAULT_ENGINE, ENGINES, READY_ORDERS
 from simmpp.machine.constants import Constants
@@ -200,6 +201,8 @@ class Settings(Strict):
     """Values of dotted keys, such as memory.fraction: [0.1, 0.5, 1]."""
     check: CheckSettings = CheckSettings()
     """Tolerances of `simmpp check` against its baseline."""
+    advise: AdviseSettings | None = None
+    """The question of `simmpp advise`: goal, numbers of nodes, candidates."""
 
     @model_validator(mode="after")
     def _one_thing_is_asked(self) -> Settings:

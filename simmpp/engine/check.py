@@ -16,7 +16,7 @@ from simmpp.machine.topology import topology_of
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.machine.uneven import check_unlike
 from simmpp.placement.placement import Placement
-from simmpp.workload.check import is_cut
+from simmpp.workload.check import first_gap, is_cut
 from simmpp.workload.workload import MOST_TEST_SCALE, Workload
 
 
@@ -35,6 +35,8 @@ def _check_workload(workload: Workload) -> None:
     fits = {
         "child_offsets": is_cut(workload.child_offsets, n, workload.n_primaries, n),
         "itinerary_offsets": is_cut(workload.itinerary_offsets, n, 0, workload.n_tests),
+        "root_rounds": len(workload.root_rounds) in (0, workload.n_primaries)
+        and first_gap(workload.root_rounds) < 0,
         "itinerary_objects": _lie_below(workload.itinerary_objects, n_objects),
         "object_bytes": len(workload.object_bytes) == n_objects,
         "object_triangles": len(workload.object_triangles) == n_objects,
@@ -45,11 +47,6 @@ def _check_workload(workload: Workload) -> None:
     for name, does in fits.items():
         if not does:
             raise WorkloadError(f"{name} does not fit the rays and objects", where=workload.name)
-
-    for name in ("root_rounds", "object_results"):
-        if len(getattr(workload, name)):
-            problem = f"{name} are recorded, but no engine simulates them yet"
-            raise WorkloadError(problem, where=workload.name)
 
 
 def _check_machine(machine: Machine) -> None:
@@ -89,6 +86,7 @@ def _check_placement(workload: Workload, machine: Machine, placement: Placement)
         "replica_objects": _lie_below(placement.replica_objects, n_objects),
         "pixel_pes": len(placement.pixel_pes) == workload.n_primaries
         and _lie_below(placement.pixel_pes, nb),
+        "window": placement.window >= 1,
         "transient": min(placement.transient, placement.transient_bytes) >= 0,
     }
     for name, does in fits.items():

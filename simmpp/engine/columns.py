@@ -26,6 +26,8 @@ PACKED_COLUMNS = ("request_parts", "object_parts", "ray_parts", "peak_object_byt
 """Further ones, in rows of sweeps in which a policy packs."""
 USER_COLUMNS = ("user_messages", "user_dropped")
 """Likewise, in which a policy sends messages of its own."""
+ROUND_COLUMNS = ("barriers", "barrier_ps", "round_messages")
+"""Likewise, with rays in rounds that others waited for."""
 STEAL_COLUMNS = ("steal_messages",)
 """Likewise, in which PEs steal pixels."""
 UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")

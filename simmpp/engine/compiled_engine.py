@@ -16,6 +16,7 @@ from simmpp.engine.event_heap import (
     HEAD,
     INSTANT,
     PE_BITS,
+    ROUND,
     close,
     heap_lacks_room,
     push,
@@ -26,6 +27,7 @@ from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.gets import is_get, send_back
+from simmpp.engine.pe.rounds import round_begins
 from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
@@ -74,7 +76,8 @@ class CompiledRun:
         records = ("logs", "record_tests", "record_counters", "record_ends", "measures", "uneven")
         # PEs that have nothing to do may have something to say.
         talks = self.state["idle"] != 0 or self.state["steals"] != 0
-        if talks or any(self.state[name] for name in records) or not run_alone(self.state.runs):
+        is_more = talks or self.state["n_rounds"] > 1
+        if is_more or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
             self._progress(0)
@@ -121,6 +124,8 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         take(s)
         if message != NONE:
             _arrive(s, message, time_ps)
+        elif rank == ROUND:
+            _begin_round(s, time_ps)
         elif number != processes(s)[rank - INSTANT].instants:
             s.n_stale -= 1  # of a sleeper whom a message has woken before
         elif rank - INSTANT < s.processors:
@@ -151,13 +156,33 @@ def _arrive(s: Run, message: int, now_ps: int) -> None:
 @kernel
 def _deliver(s: Run, message: int, me: int, now_ps: int) -> None:
     """A message lies in the inbox of a PE or thread, and wakes it if it sleeps."""
+    link(messages(s), processes(s)[me], message)
+    _rouse(s, me, now_ps)
+
+
+@kernel
+def _rouse(s: Run, me: int, now_ps: int) -> None:
     process = processes(s)[me]
-    link(messages(s), process, message)
     if process.asleep:
         process.asleep = 0
         if process.phase == WOKEN:
             s.n_stale += 1
         _schedule_instant(s, me, now_ps)
+
+
+@kernel
+def _begin_round(s: Run, now_ps: int) -> None:
+    """All know that a round begins, and go on."""
+    round_begins(s)
+    for me in range(s.processors):
+        _rouse(s, me, now_ps)
+    _schedule_round(s)
+
+
+@kernel
+def _schedule_round(s: Run) -> None:
+    if s.round_ps != NONE:
+        push(s, s.round_ps, ROUND, s.next_round, NONE)
 
 
 @kernel
@@ -172,6 +197,7 @@ def _step(s: Run, me: int, now_ps: int) -> None:
     if s.consumed:
         process.first = following
     _go_on(s, me, next_ps)
+    _schedule_round(s)
 
 
 @kernel

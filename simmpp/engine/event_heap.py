@@ -1,7 +1,8 @@
 """The queue of what is going to happen: a binary heap of events, ordered by time and ties.
 
 Ties are broken as in the readable engine: arrivals by (destination, source, send number), then the
-instants of PEs by (PE, number), then heads of messages by (source, send number).
+beginning of a round, then the instants of PEs by (PE, number), then heads of messages by (source,
+send number).
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ PE_BITS = 31
 # Arrivals come first: a PE that begins in the same instant finds them in its inbox.
 INSTANT = 1 << 2 * PE_BITS
 """Rank of a PE's own instants, above all pairs of PEs."""
+ROUND = INSTANT - 1
+"""Rank of the beginning of a round, before the instants of those whom it wakes."""
 # Heads come last, when all messages that the instant sends are known: a message that costs nothing
 # may be at its link in the instant in which it was packed, and must wait for its turn by source.
 HEAD = INSTANT + (1 << 32)
@@ -47,7 +50,7 @@ def _set(event: Row, time_ps: int, rank: int, number: int, message: int) -> None
 @kernel
 def heap_lacks_room(s: Run) -> bool:
     """Might one more step not find room, as there are so many instants that come to nothing?"""
-    return s.heap_n < s.messages_n + s.processes_n + 1 + s.n_stale
+    return s.heap_n < s.messages_n + s.processes_n + 2 + s.n_stale
 
 
 @kernel

@@ -33,6 +33,7 @@ from simmpp.engine.residency import (
     resident_bytes,
     row_bytes,
 )
+from simmpp.engine.rounds import first_roots, roots_at_once, round_arrays, round_scalars
 from simmpp.engine.state import State
 from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine
@@ -70,6 +71,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
+    arrays |= round_arrays(workload, placement)
     arrays |= room_arrays(placement, machine, needs)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
@@ -85,13 +87,14 @@ def new_state(
     }
     scalars = {name: getattr(machine, name) for name in MACHINE}
     scalars |= _of_the_run(workload, machine, placement)
+    scalars |= round_scalars(workload, machine, placement)
     scalars |= _of_the_policy(parameters, views, address_of)
     scalars |= {"random_key": key(seed, "policy"), **pace_scalars(machine, seed)}
     state = State(arrays, scalars | flags, recording.sink)
     for name, of_pes in pace_columns(machine).items():
         state.pes[name] = of_pes
     state.pes["held_bytes"] = resident_bytes(workload, placement, everything)
-    _deal(state, placement)
+    _deal(state, workload, placement)
     if recording.counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
@@ -145,7 +148,6 @@ def _given_arrays(workload: Workload, machine: Machine, placement: Placement) ->
         "test_ps": machine.test.of_objects(workload),
         "test_scales": workload.ray_test_scales,
         "owners": placement.owners,
-        "pixels": np.argsort(placement.pixel_pes, kind="stable"),
         "copy_costs": np.array(costs, COPY),
         "noise_factors": noise_array(machine),
         "topology": network_of(topology),
@@ -159,7 +161,7 @@ def _policy_views(
     """(1,) VIEW with what stays as it is in it; (nb,) for a policy with a memory."""
     nb = placement.processors
     views = np.zeros(nb if _remembers(parameters.rules) else 1, VIEW)
-    views["nb"], views["initial_load"] = placement.island, workload.n_primaries // nb
+    views["nb"], views["initial_load"] = placement.island, _start_load(workload, placement)
     for name in NUMBERS:
         views[name] = _in_rays(getattr(parameters, name), workload, placement)
     own = parameters.numbers
@@ -172,13 +174,18 @@ def _remembers(policy: Policy) -> bool:
 
 
 def _in_rays(number: Fraction | int, workload: Workload, placement: Placement) -> int:
-    """A share of n0 / nb as a number of rays.
+    """A share of n0 / nb as a number of rays; n0 are the roots that are there together.
 
     A load is an integer: it exceeds a fraction exactly if it exceeds its floor.
     """
     if isinstance(number, int):
         return number
-    return int(number * workload.n_primaries // placement.processors)
+    return int(number * roots_at_once(workload, placement.window) // placement.processors)
+
+
+def _start_load(workload: Workload, placement: Placement) -> int:
+    """What is known of a PE before it is heard: its part of the roots that are there together."""
+    return roots_at_once(workload, placement.window) // placement.processors
 
 
 def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> dict[str, int]:
@@ -196,7 +203,7 @@ def _of_the_run(workload: Workload, machine: Machine, placement: Placement) -> d
         "transient": placement.transient,
         "transient_bytes": placement.transient_bytes,
         "row_bytes": row_bytes(placement, workload.n_objects),
-        "initial_load": workload.n_primaries // machine.processors,
+        "initial_load": _start_load(workload, placement),
     }
 
 
@@ -244,15 +251,17 @@ def _of_the_policy(
     }
 
 
-def _deal(state: State, placement: Placement) -> None:
-    """Give primary rays to the PEs of their pixels, in pixel order."""
-    n_pixels = np.bincount(placement.pixel_pes, minlength=placement.processors)
-    pes, ends = state.pes, np.cumsum(n_pixels)
+def _deal(state: State, workload: Workload, placement: Placement) -> None:
+    """Give primary rays to the PEs of their pixels, in pixel order; later rounds are not there."""
+    n_all = np.bincount(placement.pixel_pes, minlength=placement.processors)
+    n_pixels = first_roots(workload, placement)
+    pes, ends = state.pes, np.cumsum(n_all)
     pes["first"] = pes["in_hand"] = NONE
     pes["place"] = np.arange(placement.processors) % placement.island
     pes["base"] = np.arange(placement.processors) - pes["place"]
     pes["spell"] = 1
-    pes["pixel"], pes["pixel_end"] = ends - n_pixels, ends
+    pes["pixel"], pes["pixel_end"] = ends - n_all, ends - n_all + n_pixels
+    pes["later"], pes["later_end"], pes["round"] = pes["pixel_end"], ends, placement.window
     for name in ("n_ready", "load", "settled_load", "sampled_load", "peak_rays"):
         pes[name] = n_pixels
     pes["peak_object_bytes"] = pes["held_bytes"]

@@ -17,6 +17,7 @@ from simmpp.common.displayed import Displayed
 from simmpp.common.documented import documented
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import SINGLY
+from simmpp.engine.rounds import barriers, round_ends
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.uneven import bound_of
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:  # who only reads results needs no numba
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
     from simmpp.machine.machine import Machine
+    from simmpp.workload.workload import Workload
 
 
 @documented
@@ -80,6 +82,15 @@ class Result(Displayed):
     """What all tests and rays cost: T(1), the makespan of one PE that holds everything."""
     bound_ps: int = 0
     """That over the sum of all PEs' speeds (nb where all have 1), rounded up."""
+    round_ends_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    """(rounds,) int64: when the last ray of each round was finished; -1 where a run came to no end
+    before."""
+    barriers: int = 0
+    """Ends of rounds that others waited for."""
+    barrier_ps: int = 0
+    """Time of them all, from the last ray's end until every PE knew."""
+    round_messages: int = 0
+    """Messages of barriers, and of reductions that rounds began with."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     memory: MemoryUse | None = None
@@ -111,7 +122,8 @@ class Result(Displayed):
     @property
     def messages(self) -> int:
         """Messages sent, of all kinds."""
-        return sum(self.messages_by_kind) + self.user_messages + self.steal_messages
+        own = self.user_messages + self.steal_messages + self.round_messages
+        return sum(self.messages_by_kind) + own
 
     @property
     def parts(self) -> int:
@@ -172,6 +184,7 @@ def concluded(
     log: NDArray[np.void] | None,
     use: MemoryUse | None,
     machine: Machine,
+    workload: Workload,
     work_ps: int | None = None,
 ) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing.
@@ -189,6 +202,7 @@ def concluded(
     waiting_ps = makespan_ps - compute_ps - communication_ps
     work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
     (*sent, user_messages, steal_messages), bytes_sent = state.sent_until(makespan_ps)
+    n_barriers, barrier_ps, round_messages = barriers(state, workload, machine)
     sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
     if (waiting_ps < 0).any() or (communication_ps < 0).any():
@@ -200,7 +214,7 @@ def concluded(
         messages_by_kind=sent_by_kind,
         parts_by_kind=parts_by_kind,
         messages_received=state["received"],
-        bytes_sent=bytes_sent,
+        bytes_sent=bytes_sent + round_messages * machine.header_bytes,
         rays=state["rays_done"],
         tests=state["tests"],
         rays_sent=state["rays_sent"],
@@ -218,6 +232,10 @@ def concluded(
         launch_ps=state.pes["launch_ps"].copy(),
         work_ps=work_ps,
         bound_ps=bound_of(work_ps, machine.speed, machine.processors),
+        round_ends_ps=round_ends(state),
+        barriers=n_barriers,
+        barrier_ps=barrier_ps,
+        round_messages=round_messages,
         rules_never_fired=_never_fired(state, parts_by_kind),
         memory=use,
         log=log,

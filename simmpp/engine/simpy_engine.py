@@ -32,6 +32,7 @@ from simmpp.engine.arrays.views import messages
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.gets import is_get, send_back
+from simmpp.engine.pe.rounds import round_begins
 from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
 from simmpp.engine.record.log import note_arrival
@@ -42,6 +43,7 @@ _HEAD_PS, _ARRIVAL_PS, _NUMBER, _SOURCE, _DESTINATION = (
     for name in ("head_ps", "arrival_ps", "number", "source", "destination")
 )
 _FIRST = -1  # priority before all others of its instant
+_ROUND = ((1 << 64) - 1) << 64  # after arrivals, before instants
 _PROGRESS_EVERY = 4096
 
 
@@ -71,6 +73,11 @@ def _move_head(runs: NDArray[np.void], message: int) -> int:
 
 
 @njit
+def _round_begins(runs: NDArray[np.void]) -> None:
+    round_begins(runs[0])
+
+
+@njit
 def _note_arrival(runs: NDArray[np.void], message: int) -> None:
     s = runs[0]
     if s.logs:
@@ -95,6 +102,8 @@ class SimpyRun:
         self._by_nic = state["service"] == BY_NIC
         if self._by_nic:
             self._send_back = entry_point(_send_back, state.runs, 0)
+        if state["n_rounds"] > 1:
+            self._round_begins = entry_point(_round_begins, state.runs)
         self._environment = simpy.Environment()
         # Of PEs, then of their threads.
         servers = state.arrays["processes"]
@@ -138,11 +147,13 @@ class SimpyRun:
             state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = step(runs, me, phase, message, now_ps)
-            phase, consumed, n_sent, _ = state.report.tolist()
+            phase, consumed, n_sent, round_ps, _ = state.report.tolist()
             if consumed:
                 inbox.popleft()
             if n_sent:
                 self._carry(n_sent)
+            if round_ps != NONE:
+                self._schedule_round(round_ps)
             if runs["rays_left"][0] == 0 and not self._ending:
                 self._finish()
             yield self._next(me, next_ps, wakes=phase == WOKEN)
@@ -157,7 +168,7 @@ class SimpyRun:
             state.ensure_room(now_ps)
             message = inbox[0] if inbox else NONE
             next_ps = self._serve(state.runs, me, message, now_ps)
-            _, consumed, n_sent, handed = state.report.tolist()
+            _, consumed, n_sent, _, handed = state.report.tolist()
             if consumed:
                 inbox.popleft()
             if handed != NONE:
@@ -258,10 +269,26 @@ class SimpyRun:
     def _put(self, me: int, row: int) -> None:
         """Put a message into the inbox of a PE or thread, and wake that if it sleeps."""
         self._inboxes[me].append(row)
+        self._rouse(me)
+
+    def _rouse(self, me: int) -> None:
         asleep = self._asleep[me]
         if asleep is not None:
             self._asleep[me] = None
             self._schedule_instant(me, asleep, 0)
+
+    def _schedule_round(self, time_ps: int) -> None:
+        beginning = _happened(self._environment)
+        beginning.callbacks.append(self._begin_round)
+        self._environment.schedule(beginning, _ROUND, time_ps - self._environment.now)
+
+    def _begin_round(self, beginning: Event) -> None:
+        """All know that a round begins, and go on."""
+        self._round_begins(self.state.runs)
+        for me in range(len(self.state.pes)):
+            self._rouse(me)
+        if (round_ps := int(self.state.runs["round_ps"][0])) != NONE:
+            self._schedule_round(round_ps)
 
     def _finish(self) -> None:
         """No ray is left: stop at the end of the last ray's last cost, before all else there."""

@@ -13,6 +13,7 @@ from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
 from simmpp.engine.hook_errors import told_of_hooks
 from simmpp.engine.initial import new_state
+from simmpp.engine.other_rays import require_known
 from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
@@ -61,6 +62,7 @@ def simulate(
     """
     policy = policy_of(policy)
     _check(workload, machine, placement, engine, ready_order)
+    require_known(workload, placement, policy)
     require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
@@ -90,7 +92,9 @@ def simulate(
     rows = collector.rows() if record.log is True else None
     use = memory_use(state, placement.capacity, needs)
     work_ps = total_compute_ps(workload, machine) if machine.is_uneven else None
-    return concluded(state, run.arrivals, policy.title, engine, rows, use, machine, work_ps)
+    return concluded(
+        state, run.arrivals, policy.title, engine, rows, use, machine, workload, work_ps
+    )
 
 
 def _check(

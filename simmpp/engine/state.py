@@ -44,7 +44,7 @@ class State:
         first = len(PARAMETERS) + len(COUNTERS)
         self._room_lacking = _room_entry()
         self.report = self.runs.view(np.int64)[first : first + len(REPORT)]
-        """(3,) int64: the REPORT fields of the record."""
+        """(5,) int64: the REPORT fields of the record."""
 
     def _put(self, name: str, array: NDArray[Any]) -> None:
         self.arrays[name] = array = np.ascontiguousarray(array, ARRAYS[name].dtype)
@@ -83,11 +83,12 @@ class State:
                 self._grow("log", 2 * len(self.arrays["log"]))
 
     def ensure_heap(self) -> None:
-        """See to it that the heap has a place for every message and all that takes turns.
+        """See to it that the heap has a place for every message and all that takes turns, and a
+        round's beginning.
 
         And for twice the instants that have come to nothing, and one for each PE, as these grow.
         """
-        needed = len(self.messages) + len(self.arrays["processes"]) + 1
+        needed = len(self.messages) + len(self.arrays["processes"]) + 2
         if self["talks"]:
             needed += 2 * self["n_stale"] + len(self.pes)
         if len(self.arrays["heap"]) < needed:

@@ -13,7 +13,7 @@ from simmpp.machine.machine import FAT_TREE, LEVELS, POLLED, TORUS, Level
 from simmpp.machine.ranges import NO_RANGES, Known, Ranges, known_of
 from simmpp.machine.transfer import slower
 
-_BELONGS = {
+BELONGS = {
     "shape": (TORUS,),
     "hop_latency": (TORUS, FAT_TREE),
     "levels": (LEVELS,),
@@ -75,7 +75,7 @@ class Layers:
             problem = f"it replaces {_TRIANGLES[1]}: expected one of them"
             raise ConfigError(problem, where=_TRIANGLES[0])
         topology = self.words["topology"]
-        for key, topologies in _BELONGS.items():
+        for key, topologies in BELONGS.items():
             if getattr(constants, key) is not None and topology not in topologies:
                 known = in_words(topologies)
                 problem = f"it goes with topology {known}, and this machine's is {topology}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 from simmpp.engine import columns, memory_use
 
@@ -25,13 +26,21 @@ BY_USE = {
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""
-FURTHER = tuple(name for names in BY_USE.values() for name in names)
+BY_ROWS = {"rounds": columns.ROUND_COLUMNS}
+"""Likewise, of sweeps in which the first of them is above 0 in a row: only rays tell."""
+FURTHER = tuple(name for names in (*BY_USE.values(), *BY_ROWS.values()) for name in names)
 TEXTS = (memory_use.REASON,)
 """Those of them that are no integers."""
 COLUMNS = (*KEYS, METHOD, "engine", *NUMBERS, "error")
 
 
+def told_by(rows: Iterable[Mapping[str, Any]]) -> set[str]:
+    """What rows make use of, as rays told."""
+    rows = list(rows)
+    return {use for use, names in BY_ROWS.items() if any(row.get(names[0]) for row in rows)}
+
+
 def result_columns(further: Sequence[str] = (), uses: Collection[str] = ()) -> tuple[str, ...]:
     """The columns of ``results.csv`` with those of a sweep's further keys, and of what it uses."""
-    used = (name for use, names in BY_USE.items() if use in uses for name in names)
+    used = (n for use, names in (BY_USE | BY_ROWS).items() if use in uses for n in names)
     return (*KEYS, *further, METHOD, "engine", *NUMBERS, *used, "error")

@@ -15,6 +15,7 @@ from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import OF_HOMES, Memory, Placement, PlacementRules, island_of
 from simmpp.placement.residents import Deal, as_csr, kept_count, replicas, resident_count
+from simmpp.placement.rounds import window_of
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
 
@@ -46,6 +47,8 @@ def place(
         transient_bytes=memory.kept_bytes,
         islands=rules.islands,
         capacity=memory.bounds,
+        window=window_of(rules.rounds),
+        tallies=rules.tallies,
     )
     return _spread(rules, workload, placement)
 
@@ -115,7 +118,12 @@ def rotated(
     circles = (_circle(owner_of, island, pe, seed) for pe in range(processors))
     held = [_turns(circle, owner_of, counts) for circle in circles]
     placements = [
-        Placement(processors, owner_of, *as_csr(of_fraction), 0, starts_on, islands=rules.islands)
+        Placement(
+            *(processors, owner_of, *as_csr(of_fraction), 0, starts_on),
+            islands=rules.islands,
+            window=window_of(rules.rounds),
+            tallies=rules.tallies,
+        )
         for of_fraction in zip(*held, strict=True)
     ]
     return [_spread(rules, workload, placement) for placement in placements]

@@ -34,6 +34,7 @@ from simmpp.placement.rooms import (
     Transient,
     Wish,
 )
+from simmpp.placement.rounds import BARRIER, RoundRule, Tallies
 
 # --- cutting a row of things into near-equal parts ---
 
@@ -160,6 +161,13 @@ class PlacementRules:
     islands: Annotated[int, *integer(1, MOST_COUNT)] = 1
     """Equal parts of the machine, PEs in a row, that own the whole scene each and send one another
     nothing; pixels are dealt over all PEs. As many as PEs: the replicated scene."""
+    rounds: RoundRule = BARRIER
+    """Of tables whose rays come in rounds, when the next one begins: when all PEs know that the one
+    before is over, or with that of so many rounds before (window)."""
+    tallies: Tallies = "reduce"
+    """Of tables whose objects have results, what becomes of what tests deposit: every PE keeps a
+    copy, which are added up in the end (reduce); it is sent to the owner in batches (send); nothing
+    (none)."""
 
     @model_validator(mode="after")
     def _owners_come_first(self) -> PlacementRules:
@@ -171,8 +179,9 @@ class PlacementRules:
     @model_serializer(mode="wrap")
     def _as_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         plain: dict[str, Any] = handler(self)
-        if self.islands == 1:
-            del plain["islands"]
+        for name in ("islands", "rounds", "tallies"):
+            if getattr(self, name) == getattr(PlacementRules, name):
+                del plain[name]
         return plain
 
 
@@ -211,6 +220,10 @@ class Placement:
     """Equal parts of the machine that own the whole scene each."""
     capacity: Capacity | None = None
     """All memory of one PE; None: as much as it takes."""
+    window: int = 1
+    """Rounds of rays that may be there together."""
+    tallies: Tallies = "reduce"
+    """What becomes of what tests deposit."""
 
     @property
     def island(self) -> int:

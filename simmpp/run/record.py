@@ -32,7 +32,9 @@ SIMULATIONS, FINISHED, FAILED = "simulations", "finished", "failed"
 
 def recorded(config: Config) -> dict[str, Any]:
     """The configuration with all its defaults, without the one key that decides no row."""
-    return {key: value for key, value in described(config).items() if key != "check"}
+    return {
+        key: value for key, value in described(config).items() if key not in ("check", "advise")
+    }
 
 
 def record(

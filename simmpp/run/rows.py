@@ -11,7 +11,7 @@ from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
-from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns
+from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns, told_by
 from simmpp.methods.simulation import cells, unfit_cells
 from simmpp.methods.table import METHODS
 from simmpp.run.fitting import Fitting, fittings
@@ -80,8 +80,8 @@ def write_rows(runs: Sequence[PolicyRun], point: Point, path: Path) -> None:
     uses = {use for run in runs for use in run.parameters.uses} | {*point.machine.uses}
     if point.config.memory.capacity is not None:
         uses.add(BOUNDED)
-    columns = result_columns(uses=uses)
     rows = [row(point, run) for run in runs]
+    columns = result_columns(uses=uses | told_by(rows))
     if point.placement.capacity is not None:
         rows += [unfit_row(point, each) for each in fittings(point) if not each.fits]
     write_csv(in_order(rows), columns, path)

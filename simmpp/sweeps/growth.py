@@ -19,7 +19,7 @@ from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.provenance import difference
 from simmpp.sweeps.task import canonical, constants_of, decides
 
-GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine")
+GROWS = ("seeds", "policy", "sweep", "tolerance", "max_seeds", "refine", "advise")
 """Keys of a configuration that say which points there are, and not what they are of."""
 SWEPT, NAMES = "swept", "names"
 """Parts of an identity that grow: keys that are axes, and the meanings that each name has."""

@@ -6,9 +6,8 @@ that a method does not know, a key that someone set and that the sweep sets othe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 from simmpp.common.errors import ConfigError
@@ -17,7 +16,7 @@ from simmpp.common.places import misplaced
 from simmpp.config.axes import POINTS, SAME, keys_of
 from simmpp.config.config import Config, Source
 from simmpp.config.defaults import READING
-from simmpp.methods.columns import BOUNDED, KEYS, METHOD, result_columns
+from simmpp.methods.columns import BOUNDED, KEYS, METHOD, result_columns, told_by
 from simmpp.methods.table import METHODS
 from simmpp.run.point import refuse_clash
 from simmpp.run.provenance import result_versions
@@ -59,15 +58,14 @@ class Plan:
         swept = {key for axis in self.config.axes.values() for key in keys_of(axis)}
         return (*self.further, METHOD) if METHOD in swept else self.further
 
-    @cached_property
-    def result_columns(self) -> tuple[str, ...]:
-        """Columns of ``results.csv``."""
+    def result_columns(self, rows: Sequence[Row]) -> tuple[str, ...]:
+        """Columns of ``results.csv`` with these rows."""
         uses = {use for planned in self.points for use in planned.point.policy.uses}
         if any(planned.point.config.memory.capacity is not None for planned in self.points):
             uses.add(BOUNDED)
         configs = (planned.point.config for planned in self.points)
         uses |= {use for c in configs for use in c.machine_for(c.processors).uses}
-        return result_columns(self.further, uses)
+        return result_columns(self.further, uses | told_by(rows))
 
     @property
     def tasks(self) -> list[Task]:

@@ -233,7 +233,7 @@ def tables_of(plan: Plan, results: Results) -> TablesByFile:
     profits = profit_rows(rows, keys, plan.config.settings.tolerance)
     timings = plan.timings(results.outcomes, results.trace_s)
     return {
-        RESULTS: (rows, plan.result_columns),
+        RESULTS: (rows, plan.result_columns(rows)),
         PROFITS: (profits, profit_columns(keys)),
         TIMINGS: (timings, plan.timing_columns),
         **knee_tables(rows, keys, profits),

@@ -42,7 +42,14 @@ class Task:
 def _of_everything(rules: PlacementRules) -> PlacementRules:
     """What of them matters where everything is in every memory."""
     owners = rules.owners if rules.pixels in OF_HOMES else PlacementRules().owners
-    return PlacementRules(owners=owners, pixels=rules.pixels)
+    return replace(rules, owners=owners, islands=PlacementRules().islands)
+
+
+def _said(rules: PlacementRules) -> dict[str, Any]:
+    """What they are, but for what tables alone have and these do not ask for."""
+    said, usual = asdict(rules), PlacementRules()
+    of_tables = [name for name in ("rounds", "tallies") if said[name] == getattr(usual, name)]
+    return {name: value for name, value in said.items() if name not in of_tables}
 
 
 def task_of(point: GridPoint, digest: str) -> Task:
@@ -67,7 +74,7 @@ def task_of(point: GridPoint, digest: str) -> Task:
     # {}: unlike any fraction's; x and 0% are the share and the number that they stand for
     held = {} if everywhere else asdict(memory) | {"transient": memory.kept or 0}
     held |= {"kept": memory.kept_bytes, "bounds": config.memory.bounds}
-    place = _hash(digest, machine, held, asdict(rules), seed)
+    place = _hash(digest, machine, held, _said(rules), seed)
     return Task(
         key=_hash(place, decides(policy), settings.ready_order, settings.method, settings.engine),
         placement_key=place,

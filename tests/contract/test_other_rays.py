@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from builders import Case, random_case, served, with_capacity, with_other_rays, with_repeats
 from implementations import run
+from numpy.typing import NDArray
 
 from simmpp.engine.simulate import ENGINES
 from simmpp.machine.machine import SERVICES
+from simmpp.workload.workload import FORM_FACTOR, Workload
 
 CASES = int(os.environ.get("SIMMPP_TEST_CASES", "60"))
 FIRST_SEED = int(os.environ.get("SIMMPP_TEST_FIRST_SEED", "0"))
@@ -25,12 +27,20 @@ def other_case(seed: int) -> Case:
     """The random case of a seed with rays of other kinds; each third has a capacity."""
     case, rng = random_case(seed), np.random.default_rng((seed, 20))
     workload = with_other_rays(rng, with_repeats(rng, case.workload))
-    none = np.zeros(0, np.int32)
-    workload = replace(workload, root_rounds=none, object_results=none.astype(np.int64))
-    case = replace(case, workload=workload)
+    placement = replace(case.placement, window=int(rng.choice((1, 1, 2, 3))))
+    if seed % 2:
+        workload = replace(workload, kinds=as_patches(workload))
+    case = replace(case, workload=workload, placement=placement)
     if seed % 3 == 0:
         return with_capacity(case, seed)
     return served(case, SERVICES[seed % len(SERVICES)], seed)
+
+
+def as_patches(workload: Workload) -> NDArray[np.uint8]:
+    """Kinds of the same rays, roots being those of patches: each round begins with a maximum."""
+    kinds = workload.kinds.copy()
+    kinds[: workload.n_primaries] = FORM_FACTOR
+    return kinds
 
 
 @pytest.mark.parametrize("engine", ENGINES)

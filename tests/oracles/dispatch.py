@@ -67,7 +67,7 @@ class Dispatch(Views):
         """A number, or that of the policy so called."""
         if isinstance(count, str):
             own = dict(zip(self.rules.parameters, self.policy.numbers, strict=True))
-            known = numbers(self.policy, self.workload.n_primaries, self.nb)
+            known = numbers(self.policy, self.roots_at_once, self.nb)
             return (known | own)[count]
         return count
 

@@ -85,6 +85,10 @@ class Outcome:
     """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
     ray_ends: list[int]
     """When each ray was finished."""
+    round_messages: int = 0
+    """Of barriers and reductions."""
+    round_ends: list[int] = field(default_factory=list)
+    """When the last ray of each round was finished; -1 where one was not."""
     memory: dict[str, int] = field(default_factory=dict)
     """What is written of a capacity, by column."""
 

@@ -41,6 +41,7 @@ class Simulation(Serving):
             "served": self.served,
             "rest": self.rest,
             "wake": self.wake,
+            "round": self.round_begins,
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
@@ -58,9 +59,13 @@ class Simulation(Serving):
     def begin(self, time: int, pe: PE) -> None:
         """Receive, else compute, else sleep."""
         self.sample_loads(time)
+        self.look_for_rounds(time, pe)
         pe.ended_load, pe.worked = pe.load, pe.paid.copy()
         pe.refresh_allowed = True
-        if pe.inbox:
+        if pe.owes:
+            work_end = self.reduce(time, pe)
+            self.ledger.open[pe.number] = (time, "receive load", 0)
+        elif pe.inbox:
             message = pe.inbox.popleft()
             work_end = self.receive(time, pe, message)
             self.ledger.open[pe.number] = (time, f"receive {MESSAGE_KINDS[message.kind]}", 0)
@@ -174,6 +179,7 @@ class Simulation(Serving):
             self.ledger.finished_ps[done_before:] = [clock] * done
             for ray in pe.go.finished:
                 self.ledger.ray_ends[ray] = clock
+        self.end_rounds()
         tests = self.machine.quantum - tests_left
         self.ledger.did(pe, time, "compute", clock, None, tests=tests, rays=done)
         return clock
@@ -216,6 +222,7 @@ class Simulation(Serving):
         self.ledger.finished_ps.append(clock)
         self.ledger.ray_ends[ray] = clock
         pe.go.finished.append(ray)
+        self.done.add(ray)
         self.get_on(pe)
         self.rays_left -= 1
         self.alive += len(self.children[ray]) - 1
@@ -229,6 +236,7 @@ class Simulation(Serving):
     def dispatch(self, time: int, pe: PE) -> None:
         """The work is done: send, and begin anew."""
         self.sample_loads(time)
+        self.look_for_rounds(time, pe)
         messages_before, pe.worked = len(self.ledger.sent), pe.paid.copy()
         clock = self.send_all(time, pe)
         self.note_stalls(time, pe)
@@ -258,4 +266,7 @@ def simulate(
         machine.processors, machine.header_bytes, tuple(rule for rule in has if has[rule])
     )
     outcome.memory = simulation.memory_columns()
+    outcome.bytes_sent += simulation.round_messages * machine.header_bytes
+    outcome.round_messages = simulation.round_messages
+    outcome.round_ends = simulation.round_ends()
     return outcome

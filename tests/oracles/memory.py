@@ -78,7 +78,7 @@ class Bounded(World):
         if self.bounds is None:
             return
         for pe in self.pes:
-            pe.untouched = set() if self.credits else set(pe.ready)
+            pe.untouched = set() if self.credits else pe.untouched
         self.peaks = {pe.number: Peak() for pe in self.pes}
         if self.credits:
             self.parts = self.split()
@@ -402,6 +402,10 @@ class Bounded(World):
 
     # --- every event ---
 
+    def roots_later(self, pe: PE) -> list[int]:
+        """Of rounds that it has not begun."""
+        return [ray for ray in pe.later if self.round_of[ray] >= pe.round]
+
     def note_event(self, progress: bool) -> None:
         """No more than so many events lie between two tests or finished rays."""
         self.eventless = 0 if progress else self.eventless + 1
@@ -410,6 +414,7 @@ class Bounded(World):
             most = 10 * self.nb**3 + 200 + 10 * self.nb * self.rays_left
             assert self.eventless <= most
             held = sum(len(pe.ready) + len(pe.waiting) + len(pe.pixels) for pe in self.pes)
+            held += sum(len(self.roots_later(pe)) for pe in self.pes)
             held += sum(len(lying.rays) for pe in self.pes for lying in pe.shares)
             on_their_way = [*self.flying, *(m for pe in self.pes for m in pe.inbox)]
             held += sum(m.n_rays + m.n_pixels for m in on_their_way)

@@ -144,6 +144,12 @@ class PE:
     """One of them has not answered."""
     untouched: set[int] = field(default_factory=set)
     """Without: primary rays among the ready ones that were never the first."""
+    later: list[int] = field(default_factory=list)
+    """Primary rays of rounds that have not begun."""
+    round: int = 0
+    """The first of those."""
+    owes: int = 0
+    """Time for reductions that rounds have begun with."""
     cut: bool = False
     """The front one of the ready rays was cut by the quantum."""
     shares: list[Lying] = field(default_factory=list)

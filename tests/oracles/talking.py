@@ -50,7 +50,9 @@ class Talking(Stealing):
     def rest(self, time: int, pe: PE) -> None:
         """What there was to say has been sent."""
         self.sample_loads(time)
-        if pe.inbox:
+        self.look_for_rounds(time, pe)
+        pe.ended_load = pe.load
+        if pe.inbox or pe.owes or self.has_ready(pe) or self.can_unpack(pe):
             self.begin(time, pe)
         else:
             self.sleep(time, pe)
@@ -69,6 +71,9 @@ class Talking(Stealing):
         pe, instants = sleeper
         if pe.asleep and pe.instants == instants:
             pe.asleep = False
+            if self.look_for_rounds(time, pe):
+                self.begin(time, pe)
+                return
             pe.times_woken += 1
             pe.last_woken = time
             self.dispatch(time, pe)

@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from oracles.costs import intersection_ps, packing, unpacking
-from oracles.memory import Bounded
 from oracles.network import distance, network_ps, receiving, sending
 from oracles.pace import rounded, speed_of
+from oracles.rounds import Rounds
 from oracles.state import PE
 from simmpp.common.randomness import key
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
@@ -35,7 +35,7 @@ def random_draw(seed: int, pe: PE) -> int:
     return int(bits.random_raw()) >> 1
 
 
-class Views(Bounded):
+class Views(Rounds):
     """The oracle's views."""
 
     def view(self, pe: PE, other: int, nothing_else: bool, draws: bool) -> SimpleNamespace:
@@ -51,7 +51,7 @@ class Views(Bounded):
             ready=pe.n_ready,
             held_bytes=self.held_bytes(pe),
             nothing_else=int(nothing_else),
-            initial_load=self.workload.n_primaries // self.nb,
+            initial_load=self.roots_at_once // self.nb,
             other=island.index(other),
             known_load=known,
             age_ps=age,
@@ -67,7 +67,7 @@ class Views(Bounded):
             released=pe.released,
             speed=rounded(1000 * speed_of(self.machine, pe.number)),
             other_speed=rounded(1000 * speed_of(self.machine, other)),
-            **numbers(self.policy, self.workload.n_primaries, self.nb),
+            **numbers(self.policy, self.roots_at_once, self.nb),
             **own,
         )
 

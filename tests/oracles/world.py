@@ -54,6 +54,12 @@ class World:
         self.positions = [0] * self.workload.n_rays
         self.ledger.ray_hops = [0] * self.workload.n_rays
         self.ledger.ray_ends = [0] * self.workload.n_rays
+        rounds = self.workload.root_rounds
+        self.round_of = [int(rounds[p]) if len(rounds) else 0 for p in self.workload.pixels]
+        self.n_rounds = max(self.round_of, default=0) + 1
+        together = min(self.placement.window, self.n_rounds)
+        self.roots_at_once = self.workload.n_primaries * together // self.n_rounds
+        self.done: set[int] = set()
         self.pes = [self.new_pe(k) for k in range(self.nb)]
         self.sampled = [pe.load for pe in self.pes]
         self.sampled_at = 0
@@ -68,9 +74,15 @@ class World:
         resident |= {int(o) for o in self.placement.replica_objects[first:end]}
         if self.rules.all_resident:
             resident = set(range(len(self.owners)))
-        rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
-        share = self.workload.n_primaries // self.nb
-        return PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
+        all_rays = [ray for ray, pe in enumerate(self.placement.pixel_pes) if pe == k]
+        all_rays.sort(key=lambda ray: self.round_of[ray])  # those of a round stay as they are
+        window = self.placement.window
+        rays = [ray for ray in all_rays if self.round_of[ray] < window]
+        share = self.roots_at_once // self.nb
+        pe = PE(k, resident, rays, [share] * self.nb, ended_load=len(rays))
+        pe.later, pe.round = [ray for ray in all_rays if ray not in rays], window
+        pe.untouched = set(rays)
+        return pe
 
     def island_of(self, k: int) -> list[int]:
         """The PEs of a PE's island."""

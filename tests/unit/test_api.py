@@ -146,6 +146,7 @@ def arguments(names: dict[str, Any]) -> dict[str, dict[str, Any]]:
         "estimate": part
         | {"policies": ["ray"], "fractions": [0.5], "rules": kept["rules"], "engine": "compiled"}
         | {"ready_order": "depth-first", "replicates": 1, "seed": 0},
+        "advise": {"config": {"scene": "tetra:1"}, "workers": 1, "seconds": 1.0},
         "sweep": {"config": {"scene": "tetra:1"}, "workers": 1, "engine": "compiled"}
         | {"timeout_s": 1.0, "out": None},
     }

@@ -40,6 +40,7 @@ from simmpp.engine.arrays.records import (
     PROCESS,
     RAY,
     ROOM,
+    ROUND,
     SIZES,
     SLICE,
     TRAFFIC,
@@ -112,7 +113,9 @@ ARRAYS = {
     "resident": Array(I1),
     "replica_offsets": Array(I8),
     "replica_objects": Array(I4),
-    "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row
+    "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row, by round
+    "ray_rounds": Array(I4),  # (n,); this and the next are empty where all rays are of one round
+    "rounds": Array(ROUND),
     # of a capacity; empty without one
     "rooms": Array(ROOM),  # (nb,)
     "most_alive": Array(I4),  # (n,) rays of its tree that can be alive at once
@@ -240,6 +243,10 @@ PARAMETERS = (
     "measures",  # there is a capacity to compare with,
     "bounded",  # credits, and room for rays and objects,
     "escapes",  # and a PE that can't go on fetches an object
+    "n_rounds",
+    "window",  # rounds that may be there together
+    "barrier_ps",  # from the end of a round until all know
+    "choosing_ps",  # of the reduction that a round begins with
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
@@ -265,12 +272,17 @@ COUNTERS = (
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
     "user_dropped",  # messages of the policy's own that were one too many, or to nobody
+    "n_over",  # rounds that are over
+    "over_ps",  # when they were
+    "next_round",  # that is to be announced,
+    "is_announced",  # or is and has not begun
     "n_stale",  # events in the heap of sleepers whom a message woke before their time
 )
 REPORT = (
     "phase",  # of the PE's next instant
     "consumed",  # 1: the message of the inbox was received
     "n_sent",  # messages in the outbox
+    "round_ps",  # when the round begins that this step has announced; NONE: it has not
     "handed",  # the message that a thread has handed over to its PE; NONE: none
 )
 """What the last step of a PE wants its engine to know."""

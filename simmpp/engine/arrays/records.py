@@ -45,6 +45,10 @@ PE = np.dtype(
         ("received_load", "i4"),  # 1 if the last work phase was the receipt of a LOAD message
         ("pixel", "i4"),  # where in ``pixels`` those that are not started begin,
         ("pixel_end", "i4"),  # and end
+        ("later", "i4"),  # likewise those of rounds that have not begun
+        ("later_end", "i4"),
+        ("round", "i4"),  # the first that it has not begun
+        ("owes_ps", "i8"),  # for reductions that rounds begin with
         ("cut", "i4"),  # 1: the first ready ray was cut by the quantum
         ("draws", "i8"),  # random numbers that its policy was given
         ("service_ps", "i8"),  # of its thread, which is busy until then:
@@ -111,6 +115,13 @@ PEER = np.dtype(
         ("exchanged", "i4"),  # 1: rays or objects went from one to the other
     ],
     align=True,
+)
+ROUND = np.dtype(
+    [
+        ("left", "i8"),  # rays that are not finished
+        ("end_ps", "i8"),  # the latest end of a ray
+        ("begin_ps", "i8"),  # when all know that its roots may start; NONE: not known yet
+    ]
 )
 ROOM = np.dtype(
     [

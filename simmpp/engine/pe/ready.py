@@ -11,6 +11,7 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, ends_ps, most_alive, pes, pixels, rays, rooms
 from simmpp.engine.pe.bounds.rooms import fits, note_memory
+from simmpp.engine.pe.rounds import count_in_round
 
 
 @kernel
@@ -93,6 +94,8 @@ def finish_ray(s: Run, me: int, ray: int, now_ps: int) -> None:
     pe.finished += 1
     s.rays_done += 1
     s.rays_left += end - child - 1
+    if s.n_rounds > 1:
+        count_in_round(s, ray, end - child - 1, now_ps)
     if s.record_ends:
         ends_ps(s)[ray] = now_ps
     if s.bounded and child == end:

@@ -40,6 +40,7 @@ from simmpp.engine.pe.pace import cost_of_test_ps, pace_of, paced_ps, took
 from simmpp.engine.pe.peers import sample_loads
 from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_ready
 from simmpp.engine.pe.receiving import receive
+from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
 from simmpp.engine.pe.talking import get_on, rest, wake
 from simmpp.engine.record.counters import note_finished, note_load, note_work
 from simmpp.engine.record.log import note_compute
@@ -55,11 +56,14 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     and the number of messages in the outbox. With phase WOKEN the PE sleeps as well: a message
     that arrives before that time wakes it, and there is no such instant any more.
     """
-    s.phase, s.consumed, s.n_sent = BEGIN, 0, 0
+    s.phase, s.consumed, s.n_sent, s.round_ps = BEGIN, 0, 0, NONE
     if s.load_info == SAMPLED and now_ps >= s.next_sample_ps:
         sample_loads(s, now_ps)
     pe = pes(s)[me]
     next_ps = now_ps
+    if s.n_rounds > 1 and start_rounds(s, me, now_ps):
+        note_peaks(s, pe)
+        phase = BEGIN if phase == WOKEN else phase
     if phase == WOKEN and message == NONE:
         wake(s, me, now_ps)
         phase = DISPATCH
@@ -85,13 +89,16 @@ def _begin(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
     # Others see this one (load_info exact), never a load in the middle of an activity.
     pe.settled_load = pe.load
     unpacks = message == NONE and s.bounded and can_unpack(s, me)
-    if message == NONE and not unpacks and not has_ready(s, me):
+    reduces = pe.owes_ps > 0
+    if message == NONE and not (unpacks or reduces) and not has_ready(s, me):
         return rest(s, me, phase, now_ps) if s.idle != 0 or s.steals else SLEEP
     s.activities += 1
     if s.bounded:
         _require_progress(s)
     s.phase = DISPATCH
-    if message != NONE:
+    if reduces:
+        next_ps = reduce(s, me, now_ps)
+    elif message != NONE:
         s.consumed = 1
         next_ps = receive(s, me, message, now_ps)
     elif unpacks:
@@ -172,8 +179,11 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
     if done > 0:
         # Whatever followed the last of these rays was for others, which are finished later.
         s.last_ray_ps = max(s.last_ray_ps, end_ps)
-        if s.record_ends and 0 < tests < s.least_tests:
+        are_together = 0 < tests < s.least_tests
+        if s.record_ends and are_together:
             end_together(s, last, end_ps)
+        if s.n_rounds > 1:
+            end_rounds(s, last if are_together else NONE, end_ps)
     if tests > 0 or done > 0:
         s.progress_at = s.activities
         get_on(pe)

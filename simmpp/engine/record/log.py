@@ -27,7 +27,7 @@ from simmpp.engine.arrays.records import (
     Run,
 )
 from simmpp.engine.arrays.views import log, messages, pes
-from simmpp.machine.messages import OBJECT, RAYS, REQUEST
+from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 
 LOG_ROWS = 1 << 13
 """Rows that are kept before they are handed on: half a megabyte."""
@@ -65,6 +65,14 @@ def note_unpack(s: Run, me: int, n: int, n_bytes: int, begin_ps: int, end_ps: in
     _note(s, me, RECEIVE, 0, n, begin_ps, end_ps)
     event = log(s)[s.n_logged - 1]
     event.other, event.kind, event.number, event.payload_bytes = NONE, RAYS, NONE, n_bytes
+
+
+@kernel
+def note_reduction(s: Run, me: int, begin_ps: int, end_ps: int) -> None:
+    """The PE took part in a reduction: a receipt of nothing but a header, from nobody."""
+    _note(s, me, RECEIVE, 0, 0, begin_ps, end_ps)
+    event = log(s)[s.n_logged - 1]
+    event.other, event.kind, event.number, event.payload_bytes = NONE, LOAD, NONE, 0
 
 
 @kernel

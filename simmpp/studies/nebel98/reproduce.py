@@ -149,7 +149,7 @@ def _report(
         write_text(_said(overrides) + configuration(name), out / f"{name}.yaml")
     rows = {name: plan.rows(journal.outcomes) for name, plan in plans.items()}
     for name, table in rows.items():
-        write_csv(table, plans[name].result_columns, out / f"{name}.csv")
+        write_csv(table, plans[name].result_columns(table), out / f"{name}.csv")
     measured = {name: RowIndex(table) for name, table in rows.items()}
     for figure, (name, panels) in FIGURES.items():
         draw(_of_reading(panels(measured[name]), reading), out / figure)
