@@ -120,7 +120,7 @@ def _sizes(
         misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),
         peers=1 + pairs,
         sent=sent,
-        messages=min(sent, n_objects + 2 * nb + 1),
+        messages=2 * min(sent, n_objects + 2 * nb + 2),  # so that one more step finds room
         deposits=leaves,
         talks=parameters.rules.talks,
         steals=parameters.steals,

@@ -279,6 +279,7 @@ COUNTERS = (
     "n_logged",
     "bin_width",  # k: the bins of the counters are 2^k ps wide
     "n_events",  # in the heap of the compiled event loop
+    "taken",  # 1: the first of them is being handled
     "arrivals",  # that it has seen
     "progress_at",  # ``activities`` at the last test or finished ray
     "sampled_ps",  # when all loads were last sampled
