@@ -107,12 +107,11 @@ def _unfit(advice: Advice, height: float, styles: dict[str, int]) -> Iterator[Cu
 
 
 def _said_of_times(advice: Advice) -> str:
-    chosen = advice.chosen
-    if chosen is None:
-        return "Nothing came to an end."
     number = advice.verdict.chosen
-    assert number is not None
-    return f"{words.capital(named(chosen))} takes {rounded_time(advice.makespan_ps(number).mean)}."
+    if number is None:
+        return "Nothing came to an end."
+    takes = rounded_time(advice.makespan_ps(number).mean)
+    return f"{words.capital(named(advice.fitting[number]))} takes {takes}."
 
 
 # --- who wins with which memory ---

@@ -10,7 +10,8 @@ from simmpp.report.advice.figures import advice_figures
 from simmpp.report.page.figures.figure import figure_data
 from simmpp.report.page.template import rendered
 from simmpp.studies.advise.advice import Advice
-from simmpp.studies.advise.answer import capacity, rounded_time
+from simmpp.studies.advise.answer import rounded_time
+from simmpp.studies.advise.candidates import capacity_of
 from simmpp.studies.advise.memory_map import Place
 from simmpp.studies.advise.table import CANNOT_WIN
 
@@ -25,7 +26,7 @@ def write_advice_page(advice: Advice, places: list[Place], folder: Path) -> Path
         "title": f"Advice for {advice.scene}",
         "facts": [
             f"machine {config.preset}",
-            f"{format_bytes(capacity(advice))} a node",
+            f"{format_bytes(capacity_of(config))} a node",
             f"goal {_goal(advice)}",
         ],
         "live": "",

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.common.yamlfile import written
 from simmpp.run import words
 from simmpp.studies.advise.advice import NODE_SECONDS, Advice
-from simmpp.studies.advise.candidates import Candidate
+from simmpp.studies.advise.candidates import Candidate, capacity_of
 from simmpp.studies.advise.confidence import LEAST_SEEDS
 from simmpp.studies.advise.sensitivity import Swing
 from simmpp.sweeps.intervals import MeanInterval
@@ -22,9 +23,11 @@ MOST_TOLD = 4
 def sentences_of(advice: Advice) -> list[str]:
     """All of it."""
     of_a_part = [advice.left_out] if advice.left_out else []
-    if advice.chosen is None:
+    number = advice.verdict.chosen
+    if number is None:
         return [*_nothing(advice), *of_a_part, *_unfit(advice)]
-    told = [*_use(advice), *of_a_part, *_sure(advice), *_next(advice), *_unfit(advice)]
+    told = [*_use(advice, number), *of_a_part, *_sure(advice)]
+    told += [*_next(advice, number), *_unfit(advice)]
     return [*told, *_hangs_on(advice)]
 
 
@@ -33,14 +36,12 @@ def settings_of(advice: Advice) -> str:
     chosen = advice.chosen
     if chosen is None:
         return ""
-    nested: dict[str, object] = {}
+    nested: dict[str, Any] = {}
     for key, value in chosen.keys.items():
         *above, last = key.split(".")
         node = nested
         for part in above:
-            inner = node.setdefault(part, {})
-            assert isinstance(inner, dict)
-            node = inner
+            node = node.setdefault(part, {})
         node[last] = value
     return "".join(f"{key}: {written(value)}\n" for key, value in nested.items())
 
@@ -58,10 +59,8 @@ def named(candidate: Candidate, short: bool = False) -> str:
 # --- the parts ---
 
 
-def _use(advice: Advice) -> Iterator[str]:
-    chosen, number = advice.chosen, advice.verdict.chosen
-    assert chosen is not None and number is not None
-    found = advice.makespan_ps(number)
+def _use(advice: Advice, number: int) -> Iterator[str]:
+    chosen, found = advice.fitting[number], advice.makespan_ps(number)
     bound = rounded_time(advice.bounds[number])
     text = f"Use {named(chosen)}: {_time(found)}, of which computing alone takes {bound}"
     if advice.asked.goal == NODE_SECONDS:
@@ -81,7 +80,10 @@ def _sure(advice: Advice) -> Iterator[str]:
     unrun = len(advice.fitting) - len(advice.contest.race.costs) - len(advice.contest.race.dropped)
     if advice.broken_off:
         untried = f", {unrun} were not tried" if unrun > 0 and not verdict.sure else ""
-        yield f"Broken off ({advice.broken_off}): of {of}{untried}, this was the best so far."
+        told = f"of {of}{untried}, this was the best so far"
+        if advice.contest.race.is_over:
+            told = "the race was over, what it hangs on is not all known"
+        yield f"Broken off ({advice.broken_off}): {told}."
     if verdict.sure is None:
         yield f"How sure that is can't be said from fewer than {LEAST_SEEDS} seeds."
         return
@@ -112,13 +114,12 @@ def _claim(advice: Advice, of: str) -> str:
     return f"no other of {of} is more than {most} {measure}"
 
 
-def _next(advice: Advice) -> Iterator[str]:
-    """The best of the others that is not a tie, or is one with other nodes or another policy."""
-    chosen, others = advice.chosen, advice.others()
-    assert chosen is not None and advice.verdict.chosen is not None
+def _next(advice: Advice, number: int) -> Iterator[str]:
+    """The best of the others, and its price."""
+    chosen, others = advice.fitting[number], advice.others()
     if not others:
         return
-    runner_up, own = advice.fitting[others[0]], advice.makespan_ps(advice.verdict.chosen)
+    runner_up, own = advice.fitting[others[0]], advice.makespan_ps(number)
     found = advice.makespan_ps(others[0])
     first = "Runner-up" if found.mean >= own.mean else "As good, but not as simple"
     text = f"{first}: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
@@ -131,7 +132,7 @@ def _unfit(advice: Advice) -> Iterator[str]:
     unfit = [candidate for candidate in advice.candidates if not candidate.fits]
     if not unfit:
         return
-    has = format_bytes(capacity(advice))
+    has = format_bytes(capacity_of(advice.config))
     sizes = sorted({each.processors for each in advice.candidates})
     nothing = [s for s in sizes if all(not c.fits for c in advice.candidates if c.processors == s)]
     told = []
@@ -154,7 +155,7 @@ def _unfit(advice: Advice) -> Iterator[str]:
 
 
 def _nothing(advice: Advice) -> Iterator[str]:
-    has = format_bytes(capacity(advice))
+    has = format_bytes(capacity_of(advice.config))
     if advice.fitting:
         yield "Nothing came to an end: no candidate can be advised."
         return
@@ -197,13 +198,6 @@ def _turns(advice: Advice, swing: Swing) -> Iterator[str]:
 
 
 # --- words ---
-
-
-def capacity(advice: Advice) -> int:
-    """Bytes of a node."""
-    size = advice.config.memory.capacity
-    assert isinstance(size, int)
-    return size
 
 
 def _rounded(swing: Swing, value: int) -> str:

@@ -15,8 +15,8 @@ from simmpp.studies.advise.constants import Constant, drawn, log_ratio
 RIVALS = 4
 """Others that are tried with each draw: the best with another policy or number of nodes. ESTIMATE:
 rivals of one policy move with it."""
-RIVALS_AT_ENDS = 2
-"""Of these, those that are tried at both ends of each range."""
+RIVALS_AT_ENDS = 1
+"""Of these, the best is tried at both ends of each range: each takes two runs a constant."""
 DRAWS = 16
 """Machines drawn from the ranges."""
 STREAM = "advise constants"
