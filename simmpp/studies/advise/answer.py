@@ -27,7 +27,7 @@ def sentences_of(advice: Advice) -> list[str]:
     if number is None:
         return [*_nothing(advice), *of_a_part, *_unfit(advice)]
     told = [*_use(advice, number), *of_a_part, *_sure(advice)]
-    told += [*_next(advice, number), *_unfit(advice)]
+    told += [*_next(advice, number), *_credits(advice), *_unfit(advice)]
     return [*told, *_hangs_on(advice)]
 
 
@@ -152,6 +152,12 @@ def _unfit(advice: Advice) -> Iterator[str]:
         told.append(f"{_listed(names)} on {on} (needs {needs_of} a node)")
     if told:
         yield f"Doesn't fit into {has}: {'; '.join(told)}."
+
+
+def _credits(advice: Advice) -> Iterator[str]:
+    if advice.beyond_bytes:
+        more = format_bytes(int(float(f"{advice.beyond_bytes:.3g}")))
+        yield f"It fits with credits only: without them a node would hold {more} more than it has."
 
 
 def _nothing(advice: Advice) -> Iterator[str]:
