@@ -11,6 +11,7 @@ from simmpp.engine.bounds import memory_use
 from simmpp.engine.capacity import require_room
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
+from simmpp.engine.filling import filled
 from simmpp.engine.hook_errors import told_of_hooks
 from simmpp.engine.initial import new_state
 from simmpp.engine.other_rays import require_known
@@ -67,6 +68,7 @@ def simulate(
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
     needs = require_room(workload, machine, placement, policy)
+    placement, needs = filled(workload, placement, needs)
     state = new_state(
         workload,
         machine,

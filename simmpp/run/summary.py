@@ -35,17 +35,18 @@ def heading(point: Point) -> str:
     if placement.islands > 1:
         network += f", {placement.islands} islands of {placement.island}"
     memory = point.config.memory
-    room = (
-        format_bytes(memory.bytes)
-        if memory.bytes is not None
-        else f"{float(memory.fraction):g} of the scene"
-    )
+    room = f"{float(memory.share):g} of the scene"
+    effective = f"(effectively {placement.effective_fraction:.4g})"
+    if memory.bytes is not None:
+        room = format_bytes(memory.bytes)
+    elif memory.fills:
+        room, effective = "filled with replicas", "(as much as each policy leaves room for)"
     return (
         f"{workload.name}: {primaries(workload)}, "
         f"{counted(workload.n_rays, 'ray')} in all, "
         f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
         f"{machine.name}: {counted(machine.processors, 'PE')} ({network}), memory {room} on each "
-        f"(effectively {placement.effective_fraction:.4g}), seed {point.seed}"
+        f"{effective}, seed {point.seed}"
     )
 
 

@@ -145,7 +145,7 @@ class Simulation(Serving):
         pe.make_ready(released, self.ready_order)
         if pe.rays_of(obj) and pe.in_flight[obj] == 0:
             pe.sendable_since[obj] = pe.next_rank()
-        if self.placement.transient or self.placement.transient_bytes:
+        if self.n_kept or self.placement.transient_bytes:
             pe.keep(obj, self.is_too_much)
         return released
 
@@ -213,7 +213,7 @@ class Simulation(Serving):
         """Do these fetched objects exceed the room for them?"""
         if self.placement.transient_bytes:
             return sum(self.object_bytes[o] for o in objects) > self.placement.transient_bytes
-        return len(objects) > self.placement.transient
+        return len(objects) > self.n_kept
 
     def finish(self, clock: int, pe: PE, ray: int) -> int:
         """A ray is shaded and leaves its children here."""

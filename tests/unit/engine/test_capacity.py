@@ -30,7 +30,7 @@ def test_parts_fill_the_capacity() -> None:
         for more in (0, 1, 7, 500, 501, 10**6, 1 << 50):
             total = needs.least_bytes + more
             parts = split(needs, bounds, total)
-            used = needs.permanent + parts.receive + parts.fetch + parts.queue
+            used = needs.permanent + parts.receive + parts.fetch + parts.queue + parts.replicas
             assert (used == total).all(), seed
             assert (parts.queue >= needs.tree).all(), seed
             assert (parts.receive >= needs.receive).all(), seed
