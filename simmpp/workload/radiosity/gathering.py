@@ -77,7 +77,8 @@ class Gathering:
         ends = (reflectance < 1) | (factors.sum(axis=1) < 1 - ENOUGH)[:, None]
         while (ends != (more := ends | (factors @ ends > 0))).any():
             ends = more
-        if not ends[self._reached].all():
+        shines = (self._room.patches.emitted > 0).any(axis=0)
+        if not ends[self._reached][:, shines].all():
             raise self._room.endless()
 
     @property
