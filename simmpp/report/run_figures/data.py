@@ -85,8 +85,8 @@ class Motion:
     def pictures(self) -> list[str]:
         """Names of the pictures that there are of it."""
         networks = OF_NETWORKS.get(type(self.topology), ())
-        # Roots that are no pixels, such as particles, are all in one row.
-        pixels = ["pixels"] if len(self.pixel_owner) > 1 else []
+        # Roots that are no pixels, such as particles, are all in one column.
+        pixels = ["pixels"] if self.pixel_owner.shape[1] > 1 else []
         return ["activity", "progress", *networks, "traffic", "memory", *pixels]
 
     @property
