@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import groupby
 
 from simmpp.common.units import counted, format_bytes, format_ps
 from simmpp.common.yamlfile import written
@@ -22,9 +21,11 @@ MOST_TOLD = 4
 
 def sentences_of(advice: Advice) -> list[str]:
     """All of it."""
+    of_a_part = [advice.left_out] if advice.left_out else []
     if advice.chosen is None:
-        return [*_nothing(advice), *_unfit(advice)]
-    return [*_use(advice), *_sure(advice), *_next(advice), *_unfit(advice), *_hangs_on(advice)]
+        return [*_nothing(advice), *of_a_part, *_unfit(advice)]
+    told = [*_use(advice), *of_a_part, *_sure(advice), *_next(advice), *_unfit(advice)]
+    return [*told, *_hangs_on(advice)]
 
 
 def settings_of(advice: Advice) -> str:
@@ -61,7 +62,7 @@ def _use(advice: Advice) -> Iterator[str]:
     chosen, number = advice.chosen, advice.verdict.chosen
     assert chosen is not None and number is not None
     found = advice.makespan_ps(number)
-    bound = _digits(advice.bounds[number])
+    bound = rounded_time(advice.bounds[number])
     text = f"Use {named(chosen)}: {_time(found)}, of which computing alone takes {bound}"
     if advice.asked.goal == NODE_SECONDS:
         text += f"; {_node_seconds(found.mean * chosen.processors)}"
@@ -84,24 +85,31 @@ def _sure(advice: Advice) -> Iterator[str]:
     if verdict.sure is None:
         yield f"How sure that is can't be said from fewer than {LEAST_SEEDS} seeds."
         return
-    if isinstance(asked.goal, int):
-        claim = f"it takes at most {format_ps(asked.goal)}, and fewer nodes do not"
-        claim += f" (each within {float(asked.indifference):.0%})"
-    else:
-        measure = "cheaper" if asked.goal == NODE_SECONDS else "faster"
-        claim = f"no other of {of} is more than {float(asked.indifference):.0%} {measure}"
-    if advice.verdict.is_within or not isinstance(asked.goal, int):
-        sure = words.capital(_share(verdict.sure))
-        yield f"{sure} sure that {claim}, by the chance of placements."
+    claim = _claim(advice, of)
+    is_drawn = any(advice.fitting[number].is_drawn for number in verdict.likely)
+    if claim and is_drawn:
+        yield f"{words.capital(_share(verdict.sure))} sure, with {LEAST_SEEDS} seeds, that {claim}."
+    elif claim:
+        yield f"{words.capital(claim)}; nothing about them is drawn, so seeds have no part in that."
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
-            f" {round(given.kept * given.n_draws)} of {given.n_draws} machines:"
-            f" {_share(verdict.sure * given.kept)} sure of both."
+            f" {given.n_kept} of {given.n_draws} machines:"
+            f" {_share(verdict.sure * given.kept)} sure{' of both' * is_drawn}."
         )
     if verdict.ties and not isinstance(asked.goal, int):
         others = _listed(named(advice.fitting[n]) for n in verdict.ties)
         yield f"A tie within {float(asked.indifference):.0%} with {others}."
+
+
+def _claim(advice: Advice, of: str) -> str:
+    """What is sure, or not; nothing where a limit is not kept."""
+    goal, most = advice.asked.goal, f"{float(advice.asked.indifference):.0%}"
+    if isinstance(goal, int):
+        text = f"it takes at most {format_ps(goal)}, and fewer nodes do not (each within {most})"
+        return text if advice.verdict.is_within else ""
+    measure = "cheaper" if goal == NODE_SECONDS else "faster"
+    return f"no other of {of} is more than {most} {measure}"
 
 
 def _next(advice: Advice) -> Iterator[str]:
@@ -112,10 +120,10 @@ def _next(advice: Advice) -> Iterator[str]:
         return
     runner_up, own = advice.fitting[others[0]], advice.makespan_ps(advice.verdict.chosen)
     found = advice.makespan_ps(others[0])
-    text = f"Runner-up: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
+    first = "Runner-up" if found.mean >= own.mean else "As good, but not as simple"
+    text = f"{first}: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
     if runner_up.processors != chosen.processors:
-        ratio = runner_up.processors / chosen.processors
-        text += f", with {ratio:.3g} times the nodes"
+        text += f", with {_times_the_nodes(runner_up.processors / chosen.processors)}"
     yield f"{text}."
 
 
@@ -132,14 +140,15 @@ def _unfit(advice: Advice) -> Iterator[str]:
         told.append(
             f"anything on {_or(nothing)} PEs (at least {format_bytes(least)} on {nothing[-1]})"
         )
-    rest = sorted(
-        (c for c in unfit if c.processors not in nothing), key=lambda c: (c.setup.name, c.order)
-    )
-    for name, group in groupby(rest, key=lambda c: c.setup.name):
-        of_name = list(group)
+    alike: dict[tuple[str, str], list[str]] = {}
+    rest = [c for c in unfit if c.processors not in nothing]
+    for name in dict.fromkeys(c.setup.name for c in rest):
+        of_name = [c for c in rest if c.setup.name == name]
         needs = dict.fromkeys(format_bytes(c.least_bytes) for c in of_name)
-        on = f" on {_or(c.processors for c in of_name)}"
-        told.append(f"{name}{on} (needs {' and '.join(needs)} a node)")
+        on = _or(c.processors for c in of_name)
+        alike.setdefault((on, " and ".join(needs)), []).append(name)
+    for (on, needs_of), names in alike.items():
+        told.append(f"{_listed(names)} on {on} (needs {needs_of} a node)")
     if told:
         yield f"Doesn't fit into {has}: {'; '.join(told)}."
 
@@ -203,20 +212,26 @@ def _rounded(swing: Swing, value: int) -> str:
 
 
 def _time(found: MeanInterval) -> str:
-    text = _digits(found.mean)
+    text = rounded_time(found.mean)
     if found.low == found.high:
         return text
     if found.low != found.low:
         return f"{text} (one seed)"
-    return f"{text} (95 %: {_digits(found.low)} to {_digits(found.high)})"
+    return f"{text} (95 %: {rounded_time(found.low)} to {rounded_time(found.high)})"
 
 
-def _digits(time_ps: float) -> str:
+def rounded_time(time_ps: float) -> str:
+    """With three digits."""
     return format_ps(int(float(f"{time_ps:.3g}")))
 
 
 def _node_seconds(time_ps: float) -> str:
     return f"{time_ps / 1e12:.3g} node-seconds"
+
+
+def _times_the_nodes(ratio: float) -> str:
+    known = {2.0: "twice the nodes", 0.5: "half the nodes", 0.25: "a quarter of the nodes"}
+    return known.get(ratio, f"{ratio:.3g} times the nodes")
 
 
 def _compared(ratio: float) -> str:
