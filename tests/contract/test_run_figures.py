@@ -303,8 +303,9 @@ MACHINE: dict[str, Any] = {
 
 
 def test_pictures_drawn_beside_are_those_drawn_here(tmp_path: Path) -> None:
-    workload = workload_of(1, [[0, 1]], object_bytes=(40, 50))
-    case = Case(workload, Machine(**MACHINE), placement_of((0, 2), [0], 4), PolicyParameters("ray"))
+    workload = workload_of(2, [[0, 1], [0]], object_bytes=(40, 50))
+    placement = placement_of((0, 2), [0, 0], 4)
+    case = Case(workload, Machine(**MACHINE), placement, PolicyParameters("ray"))
     motion = seen(case)[1]
     assert set(motion.pictures) == {"activity", "progress", "torus", "traffic", "memory", "pixels"}
     for workers in (1, 2):
