@@ -26,7 +26,7 @@ from simmpp.machine.machine import (
 )
 from simmpp.machine.torus import CONTENTIONS
 from simmpp.machine.uneven import Speeds, Straggler
-from simmpp.placement.placement import Placement
+from simmpp.placement.placement import Filling, Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room
 from simmpp.policy.parameters import CEILING, DEFAULT_POLICY, POLICIES, PolicyParameters
 from simmpp.workload.workload import PRIMARY, REFLECTED, REFRACTED, SHADOW, Workload
@@ -435,12 +435,35 @@ def with_capacity(case: Case, seed: int, **changes: Any) -> Case:
     bounds = Capacity(**(drawn | changes))
     case = with_policy(case, merge_requests=True)
     case = replace(case, machine=replace(case.machine, service="pe"))
-    case = replace(case, placement=replace(case.placement, capacity=bounds))
+    case = _some_filling(replace(case, placement=replace(case.placement, capacity=bounds)), seed)
     beyond = int(_pick(rng, (0, 0, 1, 100, 1000, 10_000, 50_000)))
     if beyond and "bytes" not in changes:
         least = needs_of(case.workload, case.machine, case.placement, case.policy).least_bytes
         bounds = replace(bounds, bytes=least + beyond)
     return replace(case, placement=replace(case.placement, capacity=bounds))
+
+
+def _some_filling(case: Case, seed: int) -> Case:
+    """In a third of the cases replicas fill what the capacity leaves; draws from a stream of its
+    own."""
+    rng, placement = np.random.default_rng((seed, 21)), case.placement
+    if rng.random() < 2 / 3:
+        return case
+    owners, nothing = placement.owners, [()] * placement.processors
+    ranked = [
+        rng.permutation(np.flatnonzero(owners != pe % placement.island)).astype(np.int32)
+        for pe in range(placement.processors)
+    ]
+    bare = placement_of(owners.tolist(), placement.pixel_pes.tolist(), len(nothing), nothing)
+    filling = Filling(ranked.__getitem__, bool(rng.integers(2)))
+    given: dict[str, Any] = {
+        "transient": placement.transient,
+        "transient_bytes": placement.transient_bytes,
+    }
+    placement = replace(
+        bare, islands=placement.islands, capacity=placement.capacity, filling=filling, **given
+    )
+    return replace(case, placement=placement)
 
 
 def on_torus(case: Case) -> Case:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import click
-import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.pictures import until_of, write_picture, write_unfinished
-from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
+from simmpp.commands.parts.recording import (
+    Looks,
+    Recorder,
+    check_timeline,
+    recorders_of,
+    sink_of,
+    warn_of_window,
+)
+from simmpp.commands.parts.results import check_results, write_results
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import (
-    FAILED,
-    at_work,
     go_on,
     notice,
     progress_bars,
@@ -28,10 +32,10 @@ from simmpp.commands.parts.terminal import (
     wrote,
 )
 from simmpp.commands.parts.tracing import workload
+from simmpp.commands.parts.verifying import verify_runs
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
-from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.fitting import require_fitting
@@ -70,6 +74,11 @@ from simmpp.workload.sources import require_drawn
     help="With --picture: also what of it each policy has finished by then, such as '5 ms'.",
 )
 @options.path(
+    "--results",
+    "Write what comes of the rays, object by object: .csv or .parquet.",
+    metavar="FILE",
+)
+@options.path(
     "--timeline",
     "Write what every PE does, and when: .json or .json.gz for Perfetto and Chrome, .parquet.",
     metavar="FILE",
@@ -89,7 +98,7 @@ from simmpp.workload.sources import require_drawn
 @click.option(
     "--verify",
     is_flag=True,
-    help="Make the picture again from the tests that the simulated PEs did, and compare.",
+    help="Make picture and results again from the tests that the simulated PEs did, and compare.",
 )
 def run_command(
     config_path: Path,
@@ -98,6 +107,7 @@ def run_command(
     out: Path | None,
     picture: Path | None,
     until: str | None,
+    results: Path | None,
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
@@ -114,6 +124,7 @@ def run_command(
     tell_files(config)
     options.writable(picture, "--picture", ".png")
     until_ps = until_of(until, picture)
+    check_results(results)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -128,7 +139,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-    looks = Looks(picture, until_ps, timeline, window_ps, figures)
+    looks = Looks(picture, until_ps, results, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -141,6 +152,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     require_fitting(point)
     if looks.picture:
         write_picture(point, looks.picture)
+    if looks.results:
+        write_results(point, looks.results)
     runs: list[PolicyRun] = []
     try:
         with recorders_of(point, looks) as recorders:
@@ -151,14 +164,15 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
     _print(point, runs)
-    _warn_of_window(runs, looks)
+    warn_of_window(runs, looks)
     print_reading(config)
     unfinished: list[Path] = []
     if looks.picture and looks.until_ps is not None:
         unfinished = write_unfinished(point, runs, looks.picture, looks.until_ps)
     _print_files(out, looks, unfinished)
     if verify:
-        _verify(point, runs)
+        has_results = looks.results is not None or bool(point.workload.object_results.any())
+        verify_runs(point, runs, tallies=has_results)
 
 
 def _simulate(
@@ -205,42 +219,13 @@ def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
         say(note)
 
 
-def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
-    """Say for which runs a timeline has nothing, as they are over before its window begins."""
-    start_ps = looks.window_ps[0] if looks.window_ps else 0
-    over = [
-        f"{run.parameters.title} at {format_ps(run.result.makespan_ps)}"
-        for run in runs
-        if run.result.makespan_ps <= start_ps
-    ]
-    if over and looks.timeline:
-        told = f"nothing happens from {format_ps(start_ps)} on: {', '.join(over)} ended"
-        notice(f"warning: --timeline-window: {told}")
-
-
 def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
-    looked = (looks.picture, *unfinished, looks.timeline, looks.figures)
+    looked = (looks.picture, *unfinished, looks.results, looks.timeline, looks.figures)
     files = [*rows, *filter(None, looked)]
     if files:
         say()
     wrote(*files)
     if out:
         go_on("report", out)
-
-
-def _verify(point: Point, runs: list[PolicyRun]) -> None:
-    """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    source, failed = point.config.ray_source, False
-    nothing = np.zeros(0, np.int32)
-    for run in runs:
-        tests = (run.result.tested_rays, run.result.tested_objects)
-        rays, objects = (nothing if column is None else column for column in tests)
-        with at_work(f"verifying {run.parameters.title}"):
-            problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
-        say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem != ""
-    if failed:
-        sys.exit(FAILED)

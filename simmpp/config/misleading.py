@@ -56,9 +56,9 @@ def _sizes(shape: Sequence[int]) -> str:
 
 def _own_shares(points: Sequence[Config], axes: Iterable[str]) -> Iterator[str]:
     """Fractions up to what a PE owns, where there are several, and are no room for fetched ones."""
-    by_share = [point for point in points if point.memory.bytes is None]
-    by_share = [point for point in by_share if point.memory.kept != point.memory.fraction]
-    pairs = [(_sharing(point), point.memory.fraction) for point in by_share]
+    of_share = (p for p in points if p.memory.bytes is None and not p.memory.fills)
+    by_share = [point for point in of_share if point.memory.kept != point.memory.share]
+    pairs = [(_sharing(point), point.memory.share) for point in by_share]
     if pairs and {"processors", "memory.fraction"} <= set(axes):  # they are multiplied
         pairs = list(product(*zip(*pairs, strict=True)))
     for sharing in dict.fromkeys(sharing for sharing, _ in pairs):

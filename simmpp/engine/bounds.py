@@ -25,7 +25,7 @@ def room_arrays(placement: Placement, machine: Machine, needs: Needs | None) -> 
     if bounds is None or needs is None:
         return {"rooms": np.zeros(0, ROOM), "most_alive": np.zeros(0, np.int32)}
     rooms = np.zeros(nb, ROOM)
-    rooms["resident"], rooms["peak"] = needs.resident, needs.resident
+    rooms["resident"] = rooms["peak"] = needs.resident + needs.replicas
     rooms["first"] = rooms["stuck"] = NONE
     if not bounds.has_credits:
         return {"rooms": rooms, "most_alive": np.zeros(0, np.int32)}

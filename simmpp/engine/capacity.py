@@ -9,7 +9,9 @@
 
 Receive and fetch are wishes (``Capacity.buffers``, ``Capacity.fetch``): they get what they want of
 what is left beside the rays of the largest tree, the queue has the remainder. So what fits into a
-capacity fits into every larger one.
+capacity fits into every larger one. With ``memory.fraction: fill`` there are no replicas in this
+sum, and the escape is for the largest object that is not the PE's own; the queue is a quarter of
+what is left, or the largest tree, and replicas have the remainder.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted, format_bytes, shown, write_bytes
 from simmpp.engine.residency import resident_bytes
+from simmpp.engine.tallies import copy_bytes
 from simmpp.machine.machine import POLLED, Machine
 from simmpp.placement.placement import Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room
@@ -38,7 +41,7 @@ class Needs:
     """Bytes that a policy needs on the PEs, whatever their capacity."""
 
     resident: Ints
-    """(nb,) int64: own objects and replicas."""
+    """(nb,) int64: own objects and replicas, and a copy of all tallies where these are reduced."""
     escape: Ints
     """(nb,) int64: the largest object that is not resident; 0 where nothing can ask."""
     control: int
@@ -53,6 +56,10 @@ class Needs:
     """Objects are asked for, other than to escape."""
     most_alive: NDArray[np.int32]
     """(n,) int32: the most rays that can be alive at once of a ray and all that it brings forth."""
+    fills: bool
+    """Replicas take what is left: of these nothing is in ``resident`` and ``escape``."""
+    replicas: Ints | int = 0
+    """(nb,) int64: what these are, once they are dealt."""
 
     @property
     def permanent(self) -> Ints:
@@ -72,6 +79,8 @@ class Split:
     receive: Ints
     fetch: Ints
     queue: Ints
+    replicas: Ints
+    """0, but where these take what the others leave."""
 
 
 def needs_of(
@@ -80,6 +89,7 @@ def needs_of(
     """What a policy needs on each PE of a placement."""
     rules, nb, bounds = policy.rules, placement.processors, placement.capacity
     resident = resident_bytes(workload, placement, rules.all_resident)
+    resident = resident + copy_bytes(workload, placement)
     largest = _largest_lacking(workload, placement, rules.all_resident)
     lacks, others = bool((largest >= 0).any()), placement.island - 1
     escapes = bounds is not None and bounds.has_escape
@@ -94,6 +104,7 @@ def needs_of(
         sends=lacks and rules.sends,
         asks=lacks and rules.asks,
         most_alive=alive,
+        fills=lacks and placement.filling is not None,
     )
 
 
@@ -155,16 +166,24 @@ def lacking(needs: Needs, placement: Placement, scene_bytes: int) -> int:
 
 def split(needs: Needs, bounds: Capacity, total_bytes: int) -> Split:
     """How PEs use a capacity that is large enough."""
-    receive, fetch, queue = [], [], []
+    parts: list[tuple[int, int, int, int]] = []
     for permanent in needs.permanent.tolist():
-        rest = total_bytes - permanent
-        free = rest - needs.tree
-        most = min(_wish(bounds.buffers, rest), free)
-        receive.append(max(needs.receive, most) if needs.sends else 0)
-        most = min(_wish(bounds.fetch, rest), free - receive[-1])
-        fetch.append(most if needs.asks else 0)
-        queue.append(rest - receive[-1] - fetch[-1])
-    return Split(*(np.array(part, np.int64) for part in (receive, fetch, queue)))
+        rest, receive, fetch = total_bytes - permanent, 0, 0
+        queue = _queue_that_is_kept(needs, rest)
+        if needs.sends:
+            receive = max(needs.receive, min(_wish(bounds.buffers, rest), rest - queue))
+        if needs.asks:
+            fetch = min(_wish(bounds.fetch, rest), rest - queue - receive)
+        left = rest - receive - fetch
+        queue = queue if needs.fills else left
+        parts.append((receive, fetch, queue, left - queue))
+    return Split(*np.array(parts, np.int64).reshape(-1, 4).T)
+
+
+def _queue_that_is_kept(needs: Needs, rest: int) -> int:
+    """What nothing else takes from the rays: the largest tree; a quarter where replicas take all
+    that is left, as far as the least room for rays that arrive allows."""
+    return max(needs.tree, min(rest // 4, rest - needs.receive)) if needs.fills else needs.tree
 
 
 def _wish(wish: Fraction | Room, rest: int) -> int:

@@ -76,7 +76,7 @@ class CompiledRun:
         records = ("logs", "record_tests", "record_counters", "record_ends", "measures", "uneven")
         # PEs that have nothing to do may have something to say.
         talks = self.state["idle"] != 0 or self.state["steals"] != 0
-        is_more = talks or self.state["n_rounds"] > 1
+        is_more = talks or self.state["n_rounds"] > 1 or self.state["leaves_n"] > 0
         if is_more or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:

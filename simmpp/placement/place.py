@@ -8,13 +8,15 @@ from fractions import Fraction
 
 import numpy as np
 
+from simmpp.common.errors import ConfigError
 from simmpp.common.randomness import generator
 from simmpp.common.validate import MOST_COUNT, MOST_SEED, require_kind, require_whole
 from simmpp.placement.homes import home_starts, spread
 from simmpp.placement.owners import most_using, owners
 from simmpp.placement.pixels import pixel_pes
 from simmpp.placement.placement import OF_HOMES, Memory, Placement, PlacementRules, island_of
-from simmpp.placement.residents import Deal, as_csr, kept_count, replicas, resident_count
+from simmpp.placement.residents import Deal, as_csr, filling, kept_count, replicas, resident_count
+from simmpp.placement.rooms import TO_FILL
 from simmpp.placement.rounds import window_of
 from simmpp.placement.uses import Ids, UsesByPE
 from simmpp.workload.workload import Workload
@@ -25,12 +27,14 @@ def place(
 ) -> Placement:
     """Place a workload on ``processors`` PEs; the same arguments give the same placement.
 
-    Raises ConfigError for a number of PEs or a seed that can't be, and for islands that are not
-    equal.
+    Raises ConfigError for a number of PEs or a seed that can't be, for islands that are not equal,
+    and for a memory without an end that is to be filled.
     """
     require_kind("workload", workload, Workload)
     require_whole("processors", processors, 1, MOST_COUNT)
     require_kind("memory", memory, Memory)
+    if memory.fills and memory.capacity is None:
+        raise ConfigError(f"memory: fraction: {TO_FILL}")
     require_kind("rules", rules, PlacementRules)
     require_whole("seed", seed, 0, MOST_SEED)
     island = island_of(rules, processors)
@@ -47,6 +51,7 @@ def place(
         transient_bytes=memory.kept_bytes,
         islands=rules.islands,
         capacity=memory.bounds,
+        filling=filling(deal, memory, seed),
         window=window_of(rules.rounds),
         tallies=rules.tallies,
     )
@@ -87,7 +92,7 @@ def _owners(
 
 def draws(memory: Memory, rules: PlacementRules) -> bool:
     """Whether the seed has a part in a placement; otherwise it is the same for every seed."""
-    residents = memory.residents == "random" and (memory.bytes is not None or memory.fraction < 1)
+    residents = memory.residents == "random" and (memory.bytes is not None or memory.share < 1)
     return residents or "random" in (rules.owners, rules.pixels)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -25,11 +26,13 @@ from simmpp.placement.dealing import PixelRule
 from simmpp.placement.dealing import Pixels as Pixels
 from simmpp.placement.rooms import (
     AS_FRACTION,
+    FILL,
     OF_A_CAPACITY,
     Capacity,
     CapacityBytes,
     Escape,
     Flow,
+    Part,
     Room,
     Transient,
     Wish,
@@ -53,8 +56,9 @@ Residents = Literal["random", "nearest", "hot", "used"]
 class Memory:
     """What fits into the memory of one PE."""
 
-    fraction: Share = Fraction(1, 10)
-    """Share x of all N objects that is resident on each PE: max(own, floor(x N + 1/2)) objects."""
+    fraction: Part = Fraction(1, 10)
+    """Share x of all N objects that is resident on each PE: max(own, floor(x N + 1/2)) objects.
+    `fill`, with a capacity: as many as it leaves room for beside rays (25% or more) and buffers."""
     bytes: Size | None = None
     """The other way to say it: room for resident objects, in place of the fraction."""
     residents: Residents = "random"
@@ -99,12 +103,23 @@ class Memory:
         ) -> None: ...
 
     @property
+    def fills(self) -> bool:
+        """Replicas take what the capacity leaves."""
+        return self.bytes is None and self.fraction == FILL
+
+    @property
+    def share(self) -> Fraction:
+        """The fraction; 0, a PE's own objects, where replicas fill what is left."""
+        return Fraction(0) if isinstance(self.fraction, str) else self.fraction
+
+    @property
     def kept(self) -> Fraction | int | Literal["x"]:
         """The transient share or number of objects; ``x`` only where no fraction says which."""
         if isinstance(self.transient, Room):
             return 0
-        by_fraction = self.transient == AS_FRACTION and self.bytes is None
-        return self.fraction if by_fraction else self.transient
+        if self.transient == AS_FRACTION and self.bytes is None and not self.fills:
+            return self.share
+        return self.transient
 
     @model_validator(mode="before")
     @classmethod
@@ -196,6 +211,19 @@ def island_of(rules: PlacementRules, processors: int) -> int:
     return processors // rules.islands
 
 
+Ranking = Callable[[int], NDArray[np.int32]]
+"""All objects that a PE does not own, the first to be replicated first."""
+
+
+@dataclass(frozen=True, eq=False)
+class Filling:
+    """Replicas that take what a capacity leaves; how much that is depends on the policy."""
+
+    ranking: Ranking
+    keeps_as_many: bool = False
+    """As many fetched objects are kept as are resident in the mean (``transient: x``)."""
+
+
 @documented
 @dataclass(frozen=True, eq=False)
 class Placement:
@@ -220,6 +248,9 @@ class Placement:
     """Equal parts of the machine that own the whole scene each."""
     capacity: Capacity | None = None
     """All memory of one PE; None: as much as it takes."""
+    filling: Filling | None = None
+    """Replicas that take what the capacity leaves (``memory.fraction: fill``), where there are none
+    yet: :func:`~simmpp.engine.filling.filled` deals them."""
     window: int = 1
     """Rounds of rays that may be there together."""
     tallies: Tallies = "reduce"

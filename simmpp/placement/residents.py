@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from simmpp.common.randomness import generator
 from simmpp.common.units import half_up
-from simmpp.placement.placement import Memory, Residents
+from simmpp.placement.placement import Filling, Memory, Placement, Ranking, Residents
+from simmpp.placement.rooms import AS_FRACTION
 from simmpp.placement.uses import Ids, UsesByPE, uses
 from simmpp.workload.workload import Workload
-
-Ranking = Callable[[int], Ids]
-"""All objects that a PE does not own, the first to be replicated first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,21 +45,48 @@ def replicas(deal: Deal, memory: Memory, seed: int) -> tuple[NDArray[np.int64], 
     holds all that a smaller one held.
     """
     workload, owners, island = deal.workload, deal.owners, deal.island
-    ranking = _rankings(memory.residents, deal, seed)
-    if memory.hot > 0:
-        ranking = _hot_first(ranking, memory.hot, deal)
+    ranking = _ranking(memory, deal, seed)
     n_own = np.bincount(owners, minlength=island)
     own_bytes = np.zeros(island, np.int64)
     np.add.at(own_bytes, owners, workload.object_bytes)
     held: list[Ids] = []
     for pe in range(deal.processors):
         if memory.bytes is None:
-            wanted = resident_count(memory.fraction, workload.n_objects) - int(n_own[pe % island])
+            wanted = resident_count(memory.share, workload.n_objects) - int(n_own[pe % island])
             held.append(ranking(pe)[:wanted] if wanted > 0 else np.zeros(0, np.int32))
         else:
             room_bytes = memory.bytes - int(own_bytes[pe % island])
             held.append(_fitting(workload.object_bytes, ranking(pe), room_bytes))
     return as_csr(held)
+
+
+def filling(deal: Deal, memory: Memory, seed: int) -> Filling | None:
+    """What replicas are to take of the memory that is left, if that is asked for."""
+    if not memory.fills:
+        return None
+    return Filling(_ranking(memory, deal, seed), memory.transient == AS_FRACTION)
+
+
+def fill(
+    placement: Placement,
+    filling: Filling,
+    object_bytes: NDArray[np.int64],
+    rooms: NDArray[np.int64],
+) -> Placement:
+    """The placement with as many replicas as fit into so many bytes of each PE: (nb,) int64."""
+    nb, n_objects = placement.processors, len(object_bytes)
+    ranked = (_fitting(object_bytes, filling.ranking(pe), int(rooms[pe])) for pe in range(nb))
+    offsets, objects = as_csr(list(ranked))
+    kept = placement.transient
+    if filling.keeps_as_many:
+        kept = _residents_of_a_pe(n_objects, placement.island, len(objects), nb)
+    return replace(
+        placement,
+        replica_offsets=offsets,
+        replica_objects=objects,
+        transient=kept,
+        filling=None,
+    )
 
 
 def as_csr(held: Sequence[Ids]) -> tuple[NDArray[np.int64], Ids]:
@@ -85,8 +110,12 @@ def kept_count(memory: Memory, deal: Deal, n_replicas: int) -> int:
         return kept
     if isinstance(kept, Fraction):
         return resident_count(kept, n_objects)
-    # Residents of a PE, in the mean.
-    return half_up(Fraction(n_objects, deal.island) + Fraction(n_replicas, deal.processors))
+    return _residents_of_a_pe(n_objects, deal.island, n_replicas, deal.processors)
+
+
+def _residents_of_a_pe(n_objects: int, island: int, n_replicas: int, processors: int) -> int:
+    """In the mean."""
+    return half_up(Fraction(n_objects, island) + Fraction(n_replicas, processors))
 
 
 def _fitting(object_bytes: NDArray[np.int64], ranked: Ids, room_bytes: int) -> Ids:
@@ -107,6 +136,11 @@ def _hot_first(ranking: Ranking, share: Fraction, deal: Deal) -> Ranking:
         return np.concatenate([deal.not_owned(hot, pe), others[~np.isin(others, hot)]])
 
     return ranked
+
+
+def _ranking(memory: Memory, deal: Deal, seed: int) -> Ranking:
+    ranking = _rankings(memory.residents, deal, seed)
+    return _hot_first(ranking, memory.hot, deal) if memory.hot > 0 else ranking
 
 
 def _rankings(rule: Residents, deal: Deal, seed: int) -> Ranking:

@@ -13,7 +13,7 @@ from simmpp.common.documented import documented
 from simmpp.common.errors import ConfigError
 from simmpp.common.quantities import SHARE, SHARE_OF_TEXT, SIZE
 from simmpp.common.strict import Expect, parsed_by
-from simmpp.common.units import MOST_BYTES, byte_count, share, shown, write_bytes
+from simmpp.common.units import A_SHARE, MOST_BYTES, byte_count, share, shown, write_bytes
 from simmpp.common.validate import MOST_COUNT, whole
 
 
@@ -23,6 +23,31 @@ class Room:
 
     bytes: int
 
+
+# --- resident objects ---
+
+FILL: Literal["fill"] = "fill"
+"""Replicas take what a capacity leaves."""
+TO_FILL = f"value {FILL!r}: expected a capacity beside it"
+_FRACTION = f"{A_SHARE}, or {FILL}"
+
+
+def _fraction(value: object) -> Fraction | str:
+    """A share, or ``fill``."""
+    if value == FILL:
+        return FILL
+    try:
+        return share(value)
+    except ConfigError:
+        raise ConfigError(f"value {shown(value)}: expected {_FRACTION}") from None
+
+
+Part = Annotated[
+    Fraction | Literal["fill"],
+    parsed_by(_fraction),
+    Expect(_FRACTION, {"anyOf": [*SHARE["anyOf"], {"const": FILL}]}, ""),
+    PlainSerializer(str),
+]
 
 # --- fetched objects that are kept ---
 

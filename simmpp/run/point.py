@@ -20,6 +20,7 @@ from simmpp.machine.machine import Machine
 from simmpp.methods.table import SIMULATE
 from simmpp.placement.place import place
 from simmpp.placement.placement import Placement
+from simmpp.placement.rooms import TO_FILL
 from simmpp.policy.parameters import CEILING, REFERENCE, PolicyParameters
 from simmpp.workload.workload import Workload
 
@@ -80,8 +81,10 @@ def refuse_models(config: Config) -> None:
 
 
 def refuse_clash(config: Config, policy: PolicyParameters) -> None:
-    """Raise ConfigError for what can't be combined with a capacity."""
+    """Raise ConfigError for what can't be combined with a capacity, or not without one."""
     capacity = config.memory.capacity
+    if capacity is None and config.memory.fills:
+        raise misplaced(("memory", "fraction"), TO_FILL, config.places)
     if capacity is None:
         return
     if problem := clash(config.machine_for(config.processors), policy):

@@ -11,9 +11,11 @@ from pathlib import Path
 
 from simmpp.common.files import Row, sort_key, write_csv
 from simmpp.config.config import Config
+from simmpp.engine.filling import effective_fraction
 from simmpp.methods.columns import BOUNDED, FURTHER, KEYS, METHOD, NUMBERS, result_columns, told_by
 from simmpp.methods.simulation import cells, unfit_cells
 from simmpp.methods.table import METHODS
+from simmpp.policy.parameters import PolicyParameters
 from simmpp.run.fitting import Fitting, fittings
 from simmpp.run.point import Point, PolicyRun
 
@@ -42,7 +44,7 @@ def point_row(
     return {
         "scene": scene,
         "processors": config.processors,
-        "fraction": "" if memory.bytes is not None else float(memory.fraction),
+        "fraction": "" if memory.bytes is not None or memory.fills else float(memory.share),
         "effective_fraction": "" if error else effective_fraction,
         "policy": policy,
         "seed": seed,
@@ -56,7 +58,7 @@ def point_row(
 
 def row(point: Point, run: PolicyRun) -> Row:
     """The row of one policy that was run at one point."""
-    effective = 1.0 if run.all_resident else point.placement.effective_fraction
+    effective = _effective_fraction(point, run.parameters)
     scene, numbers = point.workload.name, cells(run.result)
     return point_row(point.config, scene, run.parameters.title, point.seed, numbers, effective)
 
@@ -65,9 +67,13 @@ def unfit_row(point: Point, policy: Fitting) -> Row:
     """The row of a policy that does not fit: no more than that, and what it lacks."""
     scene_bytes = int(point.workload.object_bytes.sum())
     numbers = unfit_cells(policy.needs, point.placement, scene_bytes)
-    effective = 1.0 if policy.parameters.rules.all_resident else point.placement.effective_fraction
+    effective = _effective_fraction(point, policy.parameters)
     title, scene = policy.parameters.title, point.workload.name
     return point_row(point.config, scene, title, point.seed, numbers, effective)
+
+
+def _effective_fraction(point: Point, policy: PolicyParameters) -> float:
+    return effective_fraction(point.workload, point.machine, point.placement, policy)
 
 
 def in_order(rows: Iterable[Row], further: Sequence[str] = ()) -> list[Row]:

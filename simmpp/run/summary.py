@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
 from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
+from simmpp.run import rounds, words
 from simmpp.run.fitting import told
+from simmpp.run.held import memory_lines
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.workload.describe import ROOTS_OF, primaries, roots
+from simmpp.workload.workload import PARTICLE
 
 Cell = Callable[[PolicyRun], str]
 
@@ -31,17 +36,18 @@ def heading(point: Point) -> str:
     if placement.islands > 1:
         network += f", {placement.islands} islands of {placement.island}"
     memory = point.config.memory
-    room = (
-        format_bytes(memory.bytes)
-        if memory.bytes is not None
-        else f"{float(memory.fraction):g} of the scene"
-    )
+    room = f"{float(memory.share):g} of the scene"
+    effective = f"(effectively {placement.effective_fraction:.4g})"
+    if memory.bytes is not None:
+        room = format_bytes(memory.bytes)
+    elif memory.fills:
+        room, effective = "filled with replicas", "(as much as each policy leaves room for)"
     return (
         f"{workload.name}: {primaries(workload)}, "
         f"{counted(workload.n_rays, 'ray')} in all, "
         f"{counted(workload.n_tests, 'test')}, {counted(workload.n_objects, 'object')}\n"
         f"{machine.name}: {counted(machine.processors, 'PE')} ({network}), memory {room} on each "
-        f"(effectively {placement.effective_fraction:.4g}), seed {point.seed}"
+        f"{effective}, seed {point.seed}"
     )
 
 
@@ -58,6 +64,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ]
     return [
         *lines,
+        *_residual_lines(runs),
         *_message_lines(runs),
         ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
         ("rays sent", lambda run: f"{run.result.rays_sent}"),
@@ -66,8 +73,21 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  most", lambda run: f"{utilisation(run).max():.1%}"),
         ("imbalance", lambda run: f"{imbalance(run):.3f}"),
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
-        ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
-        ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+        *memory_lines(runs),
+    ]
+
+
+def _residual_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
+    """When little was left to be done, where that is known."""
+
+    def cell(column: str, run: PolicyRun) -> str:
+        time_ps = run.result.residuals_ps.get(column)
+        return "-" if time_ps is None else format_ps(time_ps)
+
+    return [
+        (f"  until {100 * share:g} % is left", partial(cell, column))
+        for column, share in LEFT.items()
+        if any(column in run.result.residuals_ps for run in runs)
     ]
 
 
@@ -91,6 +111,7 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
     packs, talks, steals = (
         any(use in run.parameters.uses for run in runs) for use in ("packs", "talks", "steals")
     )
+    has_tallies = any(run.result.tally_messages for run in runs)
     of_its_own: list[tuple[str, Cell]] = [
         ("  of the policy's own", lambda run: f"{run.result.user_messages}"),
         ("    not sent, too many", lambda run: f"{run.result.user_dropped}"),
@@ -104,6 +125,8 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  rays", lambda run: f"{run.result.ray_messages}"),
         ("  loads", lambda run: f"{run.result.load_messages}"),
         *(of_its_own if talks else []),
+        *([("  of barriers", lambda run: f"{run.result.round_messages}")] if base.barriers else []),
+        *([("  of tallies", lambda run: f"{run.result.tally_messages}")] if has_tallies else []),
         *([("  for pixels", lambda run: f"{run.result.steal_messages}")] if steals else []),
         *(parts if packs else []),
     ]
@@ -180,6 +203,14 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
+def _other_words(point: Point) -> list[str]:
+    """What those who compute particles call the policies."""
+    if roots(point.workload) != ROOTS_OF[PARTICLE]:
+        return []
+    called = [f"{words.policy(name)} is {word}" for name, word in words.OF_PARTICLES.items()]
+    return [f"in the words of particle transport: {', '.join(called)}"]
+
+
 def _stuck(runs: Sequence[PolicyRun]) -> list[str]:
     """Runs that came to no end, as no PE may escape."""
     uses = [(run.parameters.title, run.result.memory) for run in runs]
@@ -192,7 +223,8 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
-    lines += [*_memory(point, runs), *_idle_at_first(point)]
+    lines += [*rounds.told(point, runs), *_memory(point, runs)]
+    lines += [*_idle_at_first(point), *_other_words(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

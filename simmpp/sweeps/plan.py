@@ -172,9 +172,10 @@ def _refuse_unknown(point: GridPoint) -> None:
     if point.policy.name not in known:
         problem = f"value {point.policy.name!r}: method {method} knows {' and '.join(known)} only"
         raise misplaced(("policy",), problem, config.places)
-    if config.memory.bytes is not None:
-        problem = f"method {method} knows shares: expected memory.fraction"
-        raise misplaced(("memory", "bytes"), problem, config.places)
+    if config.memory.bytes is not None or config.memory.fills:
+        problem = f"method {method} knows shares: expected memory.fraction, a share"
+        key = "fraction" if config.memory.fills else "bytes"
+        raise misplaced(("memory", key), problem, config.places)
 
 
 def _check_names(points: list[PlannedPoint], further: tuple[str, ...]) -> None:

@@ -26,6 +26,7 @@ from statistics import fmean
 from simmpp.common.places import misplaced
 from simmpp.config.axes import Axis
 from simmpp.config.config import Config, changed, described
+from simmpp.placement.rooms import FILL
 from simmpp.sweeps.grid import Comparison
 from simmpp.sweeps.intervals import half_width
 from simmpp.sweeps.stopping import CORRECTED
@@ -62,7 +63,11 @@ def refined_keys(config: Config) -> list[str]:
 def _is_refinable(name: str, axis: Axis) -> bool:
     values = [choice.assignments.get(name) for choice in axis]
     are_whole = all(isinstance(value, int) and not isinstance(value, bool) for value in values)
-    if len(set(map(str, values))) < FEWEST_POINTS or name.split(".")[0] in UNREFINED:
+    if (
+        FILL in values
+        or len(set(map(str, values))) < FEWEST_POINTS
+        or name.split(".")[0] in UNREFINED
+    ):
         return False
     return name == FRACTION or are_whole
 
@@ -70,7 +75,7 @@ def _is_refinable(name: str, axis: Axis) -> bool:
 def value_of(comparison: Comparison, key: str) -> Fraction:
     """Where a comparison is on an axis."""
     if key == FRACTION:
-        return Fraction(comparison.config.memory.fraction)
+        return comparison.config.memory.share
     return Fraction(comparison.config.processors if key == "processors" else comparison.swept[key])
 
 

@@ -113,7 +113,7 @@ def decides(policy: PolicyParameters) -> dict[str, Any]:
 
 def _holds_everything(config: Config) -> bool:
     """Is the whole scene in every memory, so that no rule of a policy is ever asked?"""
-    full = config.memory.bytes is None and config.memory.fraction >= 1
+    full = config.memory.bytes is None and config.memory.share >= 1
     return full or config.settings.placement.islands == config.processors
 
 

@@ -18,6 +18,7 @@ from typing import Generic, TypeVar
 from simmpp.common.compiled import compiled_by_one
 from simmpp.common.errors import SimmppError
 from simmpp.common.modules import ENGINE
+from simmpp.engine.filling import effective_fraction
 from simmpp.engine.simulate import simulate
 from simmpp.machine.presets import machine
 from simmpp.methods.case import Case
@@ -78,7 +79,7 @@ def _outcome(task: Task, timeout_s: float | None) -> Outcome:
         workload,
         machine,
         task.policy,
-        config.memory.fraction,
+        config.memory.share,
         settings.engine,
         settings.ready_order,
         task.seed,
@@ -102,10 +103,10 @@ def _drawn(task: Task, case: Case) -> tuple[Placement, Seconds]:
 
 def _effective_fraction(case: Case, method: Method) -> float:
     """The share of the objects that is really resident; the model's own where nothing is placed."""
+    if method.is_placed:
+        return effective_fraction(case.workload, case.machine, case.place(), case.policy)
     if case.policy.rules.all_resident:
         return 1.0
-    if method.is_placed:
-        return case.place().effective_fraction
     return max(float(case.fraction), 1 / case.machine.processors)
 
 

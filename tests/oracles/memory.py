@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import floor
 
 from oracles.costs import transfer_ps, unpacking
 from oracles.state import PE, Lying, Message
@@ -29,6 +30,8 @@ class Parts:
     queue: int = 0
     share: int = 0
     """Of ``receive``, for each other PE."""
+    replicas: int = 0
+    """Room for those that fill what is left."""
 
 
 @dataclass
@@ -75,8 +78,11 @@ class Bounded(World):
         if self.credits or self.steals:
             for pe in self.pes:
                 pe.pixels, pe.ready = pe.ready, []
+        self.n_kept = self.placement.transient
+        self.before = {pe.number: pe.resident for pe in self.pes}
         if self.bounds is None:
             return
+        self.fill()
         for pe in self.pes:
             pe.untouched = set() if self.credits else pe.untouched
         self.peaks = {pe.number: Peak() for pe in self.pes}
@@ -97,20 +103,24 @@ class Bounded(World):
     def permanent(self, pe: PE) -> Parts:
         """What is never free, with the capacity still open."""
         assert self.bounds is not None
-        lacking = [set(range(len(self.owners))) - each.resident for each in self.pes]
+        lacking = [set(range(len(self.owners))) - self.before[each.number] for each in self.pes]
         escapes = self.bounds.has_escape
         can_ask = any(lacking) and (self.rules.ask is not None or escapes)
         request = self.machine.header_bytes + self.machine.request_bytes
-        own = sum(self.object_bytes[o] for o in pe.resident)
+        own = sum(self.object_bytes[o] for o in self.before[pe.number]) + self.copies()
         sizes = [self.object_bytes[o] for o in lacking[pe.number]]
         escape = max(sizes, default=0) if can_ask and escapes else 0
         return Parts(0, own, (self.island - 1) * request if can_ask else 0, escape)
 
+    def copies(self) -> int:
+        """Bytes of the tallies that every PE keeps for all objects."""
+        kept = self.placement.tallies == "reduce" and self.nb > 1
+        return int(self.workload.object_results.sum()) if kept else 0
+
     def least_receive(self) -> int:
         """A ray, with a header, of each other PE, if any is sent."""
-        anything = any(set(range(len(self.owners))) - each.resident for each in self.pes)
         each = self.machine.header_bytes + self.machine.ray_bytes
-        return (self.island - 1) * each if anything and self.rules.send else 0
+        return (self.island - 1) * each if self.anything_lacks() and self.rules.send else 0
 
     def least(self) -> int:
         """The least capacity."""
@@ -122,22 +132,52 @@ class Bounded(World):
         """The parts of each PE."""
         assert self.bounds is not None
         capacity = self.least() if self.bounds.bytes == "least" else self.bounds.bytes
-        anything = any(set(range(len(self.owners))) - each.resident for each in self.pes)
+        fills = self.is_filled()
         result = []
         for pe in self.pes:
             parts = self.permanent(pe)
             parts.capacity = capacity
             rest = capacity - parts.permanent - parts.control - parts.escape
-            beside = rest - self.largest_tree()
-            if anything and self.rules.send:
-                wish = min(wished(self.bounds.buffers, rest), beside)
+            for_rays = self.largest_tree()
+            if fills:
+                for_rays = max(for_rays, min(rest // 4, rest - self.least_receive()))
+            if self.anything_lacks() and self.rules.send:
+                wish = min(wished(self.bounds.buffers, rest), rest - for_rays)
                 parts.receive = max(self.least_receive(), wish)
-            if anything and self.rules.ask:
-                parts.fetch = min(wished(self.bounds.fetch, rest), beside - parts.receive)
-            parts.queue = rest - parts.receive - parts.fetch
+            if self.anything_lacks() and self.rules.ask:
+                wish = wished(self.bounds.fetch, rest)
+                parts.fetch = min(wish, rest - for_rays - parts.receive)
+            parts.queue = for_rays if fills else rest - parts.receive - parts.fetch
+            parts.replicas = rest - parts.receive - parts.fetch - parts.queue
             parts.share = parts.receive // max(1, self.island - 1)
             result.append(parts)
         return result
+
+    def anything_lacks(self) -> bool:
+        """Before replicas fill anything: does a PE lack an object?"""
+        return any(set(range(len(self.owners))) - self.before[pe.number] for pe in self.pes)
+
+    def is_filled(self) -> bool:
+        """Do replicas take what is left?"""
+        return self.placement.filling is not None and self.anything_lacks()
+
+    def fill(self) -> None:
+        """Deal replicas, in their order, as long as they fit."""
+        filling = self.placement.filling
+        if filling is None or not self.is_filled():
+            return
+        for pe, parts in zip(self.pes, self.split(), strict=True):
+            room = parts.replicas
+            for obj in filling.ranking(pe.number).tolist():
+                room -= self.object_bytes[obj]
+                if room < 0:
+                    break
+                pe.resident = pe.resident | {obj}
+        if filling.keeps_as_many:
+            mean = Fraction(sum(len(pe.resident) for pe in self.pes), self.nb)
+            self.n_kept = floor(mean + Fraction(1, 2))
+        for pe in self.pes:
+            self.sample_bytes(pe)
 
     # --- what is held ---
 
@@ -174,7 +214,7 @@ class Bounded(World):
         """Look what a PE holds: does it fit, is it more than ever before?"""
         if self.bounds is None:
             return
-        resident = sum(self.object_bytes[o] for o in pe.resident)
+        resident = sum(self.object_bytes[o] for o in pe.resident) + self.copies()
         fetched, rays, unread = self.fetched(pe), self.ray_memory(pe), self.unread(pe)
         self.peak_control = max(self.peak_control, self.control(pe))
         peak, total = self.peaks[pe.number], resident + fetched + rays + unread

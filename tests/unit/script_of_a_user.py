@@ -26,12 +26,12 @@ def simulated(processors: int) -> list[simmpp.Result]:
 
 def taken() -> list[Fraction]:
     for memory in (simmpp.Memory(0.1), simmpp.Memory("1/10"), simmpp.Memory(bytes="2 GB")):
-        assert_type(memory.fraction, Fraction)
+        assert_type(memory.share, Fraction)
         assert_type(memory.bytes, int | None)
     refreshed = simmpp.PolicyParameters(load_info={"refresh": "12 us"})
     assert refreshed == simmpp.PolicyParameters(refresh_ps=12_000_000)
     assert_type(refreshed.min_load, Fraction | int)
-    return [simmpp.Memory(share).fraction for share in (0.1, "10%", Fraction(1, 10))]
+    return [simmpp.Memory(share).share for share in (0.1, "10%", Fraction(1, 10))]
 
 
 def given(results: list[simmpp.Result]) -> tuple[pandas.DataFrame, simmpp.SweepResult]:

@@ -31,6 +31,7 @@ from simmpp.engine.arrays.records import (
     CREDIT,
     EVENT,
     EVENT_KEY,
+    HELD,
     MESSAGE,
     MISS,
     MOMENT,
@@ -69,6 +70,8 @@ class Sizes:
     """In flight or in an inbox, to begin with."""
     talks: bool
     """The policy may send messages of its own."""
+    deposits: bool
+    """Tests leave deposits that their owners are sent."""
     steals: bool
     """PEs ask others for pixels."""
     tested: int
@@ -81,6 +84,8 @@ class Sizes:
     """PEs whose time is counted: nb, or 0 without counters."""
     bounded: bool = False
     """Credits say how many rays may be sent."""
+    measured: bool = False
+    """There is a capacity to compare with."""
 
 
 class Array(NamedTuple):
@@ -116,6 +121,12 @@ ARRAYS = {
     "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row, by round
     "ray_rounds": Array(I4),  # (n,); this and the next are empty where all rays are of one round
     "rounds": Array(ROUND),
+    "leaves": Array(I1),  # (tests,) 1: a deposit; this and the next are empty if none is sent
+    "deposits": Array(I4, lambda n: n.peers if n.deposits else 0),  # beside ``peers``: not sent yet
+    "deposit_rounds": Array(I4, lambda n: n.peers if n.deposits else 0),  # that they count for
+    # Peers with deposits: list 2 k of PE k, or 2 k + 1 from deposits_from on.
+    "deposit_ends": Array(I4, lambda n: 4 * n.nb if n.deposits else 0),
+    "deposit_links": Array(I4, lambda n: 2 * n.peers if n.deposits else 0),
     # of a capacity; empty without one
     "rooms": Array(ROOM),  # (nb,)
     "most_alive": Array(I4),  # (n,) rays of its tree that can be alive at once
@@ -182,6 +193,7 @@ ARRAYS = {
     "traffic": Array(TRAFFIC, lambda n: n.counted**2),  # from PE i to j at nb i + j
     "sizes": Array(I8, lambda n: len(MESSAGE_KINDS) * SIZES if n.counted else 0),  # of each kind
     "slices": Array(SLICE, lambda n: n.counted),
+    "held_bins": Array(HELD, lambda n: n.counted * BINS if n.measured else 0),  # BINS per PE
     # of the compiled event loop
     "heap": Array(EVENT_KEY, lambda n: 0),  # grows
     "processes": Array(PROCESS, lambda n: 2 * n.nb),  # PEs, then their threads
@@ -247,6 +259,7 @@ PARAMETERS = (
     "window",  # rounds that may be there together
     "barrier_ps",  # from the end of a round until all know
     "choosing_ps",  # of the reduction that a round begins with
+    "deposits_from",  # deposits for one owner that are sent together
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
@@ -272,6 +285,7 @@ COUNTERS = (
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
     "user_dropped",  # messages of the policy's own that were one too many, or to nobody
+    "deposited",  # deposits sent
     "n_over",  # rounds that are over
     "over_ps",  # when they were
     "next_round",  # that is to be announced,

@@ -25,9 +25,10 @@ from simmpp.engine.pe.ready import cross, make_ready
 from simmpp.engine.pe.sending import answer, forget
 from simmpp.engine.pe.stealing import end_spell, give_pixels, take_pixels
 from simmpp.engine.pe.talking import get_on, hear
+from simmpp.engine.pe.tallies import take_deposits
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_receive
-from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST, STEAL, USER
+from simmpp.machine.messages import DEPOSIT, LOAD, OBJECT, RAYS, REQUEST, STEAL, USER
 from simmpp.machine.topology import hops
 
 
@@ -68,6 +69,8 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
         clock_ps = hear(s, me, message, clock_ps)
     elif m.kind == STEAL and m.purpose == FOR_PIXELS:
         clock_ps = give_pixels(s, me, m.source, clock_ps)
+    elif m.kind == DEPOSIT:
+        take_deposits(s, m, clock_ps)
     elif m.kind == OBJECT or m.n > 0:  # of rays, or pixels
         get_on(pe)
     if s.steals and m.n > 0:

@@ -23,6 +23,7 @@ from simmpp.engine.arrays.records import (
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
+    leaves,
     misses,
     pes,
     rays,
@@ -32,7 +33,7 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.pe.bounds.admission import can_unpack, unpack
 from simmpp.engine.pe.bounds.escape import ESCAPED
-from simmpp.engine.pe.bounds.rooms import has_ready, note_memory
+from simmpp.engine.pe.bounds.rooms import has_ready, note_memory, rays_held
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
@@ -42,7 +43,8 @@ from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_rea
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
 from simmpp.engine.pe.talking import get_on, rest, wake
-from simmpp.engine.record.counters import note_finished, note_load, note_work
+from simmpp.engine.pe.tallies import leave
+from simmpp.engine.record.counters import note_finished, note_held, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 
@@ -75,6 +77,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
         next_ps = _begin(s, me, phase, message, now_ps)
     if s.measures:
         note_memory(s, me)
+        if s.record_counters:
+            note_held(s, me, rays_held(s, me), now_ps)
     if s.phase != WOKEN:
         pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:
@@ -129,10 +133,7 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
-    """Make up to a quantum of tests on ready rays; returns the end of that work.
-
-    What a test finds is in the workload.
-    """
+    """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
     begin_ps = now_ps + s.probe_ps + s.compute_startup_ps
     pace, cost_ps = pace_of(s, me, now_ps), 0
@@ -155,11 +156,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
                 pe.cut = 1
                 break
             cost_ps += cost_of_test_ps(s, ray, obj)
-            if s.record_tests:
-                _note_test(s, ray, obj)
+            _test(s, me, ray, obj, at)
             tests, at = tests + 1, at + 1
-            s.tests += 1
-            r.tested += 1
             if r.granted or s.keeps:
                 _use(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
         else:
@@ -199,8 +197,15 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
 
 
 @kernel
-def _note_test(s: Run, ray: int, obj: int) -> None:
-    tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+def _test(s: Run, me: int, ray: int, obj: int, at: int) -> None:
+    """One ray-object intersection, at that place of all itineraries; what it finds is in the
+    workload."""
+    if s.record_tests:
+        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+    s.tests += 1
+    if s.leaves_n > 0 and leaves(s)[at] == 1:
+        leave(s, me, ray, obj)
+    rays(s)[ray].tested += 1
 
 
 @kernel

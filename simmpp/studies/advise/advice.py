@@ -46,6 +46,8 @@ class Advice:
     """Simulations of the race."""
     further_runs: int = 0
     """Simulations with other constants."""
+    left_out: str = ""
+    """Of which part of the picture it is, if all of it was too large."""
     broken_off: str = ""
     """What ended it before it was done, if anything did."""
     interrupt: KeyboardInterrupt | None = None

@@ -163,14 +163,13 @@ def setups_of(config: Config, asked: AdviseSettings, n_sizes: int) -> list[Setup
     return setups
 
 
-def _own(entry: object, config: Config) -> Setup:
+def _own(entry: str | dict[str, Any], config: Config) -> Setup:
     """A setup by its name, or one's own."""
     path = ("advise", "candidates")
     if isinstance(entry, str):
         if entry not in BY_NAME:
             raise misplaced(path, unknown(entry, list(BY_NAME)), config.places)
         return BY_NAME[entry]
-    assert isinstance(entry, dict)
     keys = {key: value for key, value in entry.items() if key != "name"}
     if "processors" in keys or not keys:
         problem = f"value {shown(entry)}: expected keys such as policy, and no processors"

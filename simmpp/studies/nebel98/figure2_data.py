@@ -63,10 +63,10 @@ def model_grid(config: Config) -> Grid:
             point = point_at(config, {name: axis}, {name: number})
             if "processors" in choice.assignments:
                 processors.add(point.processors)
+            if "memory.bytes" in choice.assignments or point.memory.fills:
+                raise ConfigError("sweep: memory: expected shares, memory.fraction, for the model")
             if "memory.fraction" in choice.assignments:
-                fractions.add(point.memory.fraction)
-            if "memory.bytes" in choice.assignments:
-                raise ConfigError("sweep: memory.bytes: expected memory.fraction for the model")
+                fractions.add(point.memory.share)
             left_out |= dict.fromkeys(key for key in choice.assignments if _matters(key))
     return Grid(
         tuple(sorted(processors or PROCESSORS)),

@@ -89,7 +89,7 @@ def _workload(cells: Cells, particles: Particles, grid: Grid, batches: list[Tabl
         Workload(
             name=cells.name,
             digest=digest_of(cells, particles),
-            picture=(1, count),
+            picture=(count, 1),
             kinds=np.full(n, PARTICLE, np.uint8),
             parents=rays.parents,
             child_offsets=np.cumsum(np.insert(n_children, 0, count), dtype=np.int32),
@@ -103,6 +103,7 @@ def _workload(cells: Cells, particles: Particles, grid: Grid, batches: list[Tabl
             object_bytes=np.full(n_cells, STATE_BYTES + GROUP_BYTES * cells.groups, np.int64),
             object_centroids=centroids(grid),
             root_homes=homes(grid, particles.seed, count),
+            object_results=np.full(n_cells, RESULT_BYTES, np.int64),
             test_deposits=rays.tracks,
         )
     )
