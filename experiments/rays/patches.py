@@ -3,8 +3,9 @@
     python experiments/rays/patches.py [SEEDS, default 16]
 
 Mitsuba's light is that of ../path/cornell.csv: paths of depth 8, so light after at most 7 bounces,
-as here. The floor is cut along the blocks that stand on it: a patch that is half below a block is
-dark there, and has one colour only.
+as here. The floor is cut along the blocks that stand on it, as a patch that is half below a block
+is dark there and has one colour only; it and the short block, on whose dark front shines the edge
+of a shadow, have the smallest patches.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from numpy.typing import NDArray
 import simmpp
 from simmpp.common.files import write_csv
 from simmpp.config.config import load_config
-from simmpp.scene.scene import MeshPart, Scene
+from simmpp.scene.scene import MeshPart, Scene, SceneObject
 from simmpp.workload.radiosity.gathering import Gathering, brightness, form_factors
+from simmpp.workload.radiosity.patches import patches_of
 from simmpp.workload.radiosity.room import Room, room_of
 from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.radiosity.solution import seen
@@ -36,6 +38,8 @@ SETTINGS = Radiosity(patches=Fraction(3, 10_000), rays=1024)
 VIEW = simmpp.Picture(
     resolution=1024, samples=4, max_depth=1, shadows=False, reflection=False, refraction=False
 )
+FINE = 60.0
+"""Area of the small patches; 0.03 % of all surface is 590."""
 BOUNCES, PATCHES, BATCH = 7, 4, 2**18
 COLOURS = ("red", "green", "blue")
 Floats = NDArray[np.float64]
@@ -54,7 +58,18 @@ def box() -> Scene:
     upright = np.cross(b - a, c - b)[:, 1] > 0
     faces[~upright] = faces[~upright, ::-1]
     cut = MeshPart(points, faces.astype(np.int32), floor.material, floor.name)
-    return replace(scene, objects=tuple(cut if o is floor else o for o in scene.objects))
+    others = [obj for obj in scene.objects if obj is not floor and obj is not short]
+    return replace(scene, objects=(*_fine(scene, cut, short), *others))
+
+
+def _fine(scene: Scene, *parts: MeshPart) -> tuple[SceneObject, ...]:
+    """Parts in patches that are smaller than those of the rest."""
+    lamp = _part(scene, "lamp")  # without which nothing shines
+    patches = patches_of(replace(scene, objects=(*parts, lamp)), Radiosity(patches=FINE))
+    return tuple(
+        obj for obj, part in zip(patches.scene.objects, patches.parts, strict=True)
+        if part < len(parts)
+    )  # fmt: skip
 
 
 def _part(scene: Scene, name: str) -> MeshPart:

@@ -1,12 +1,14 @@
 """Radiosity against closed forms: form factors, a white furnace, energy that is never lost.
 
 Tolerances of form factors are 4 standard errors of a count of n rays, as if each were drawn alone.
+The Cornell box is compared with Mitsuba's paths by experiments/rays/patches.py: its table is read.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from path_scenes import quad, walls
 from scipy.sparse import csr_array
 
+from simmpp.common.files import read_csv
 from simmpp.scene.scene import Camera, Material, Polygon, Scene, SceneObject
 from simmpp.workload.radiosity.gathering import Gathering, brightness, form_factors
 from simmpp.workload.radiosity.room import Room, room_of
@@ -200,3 +203,11 @@ def test_light_can_be_followed_bounce_by_bounce() -> None:
     assert bounces == [[1, 0], [1, 0.5], [1.25, 0.5]]
     whole = brightness(factors, emitted, half)[:, 0]
     assert np.allclose(whole, [4 / 3, 2 / 3], rtol=1e-12, atol=0)
+
+
+def test_the_committed_table_is_within_one_per_cent_of_mitsuba() -> None:
+    folder = Path(__file__).parents[2] / "experiments"
+    rows = read_csv(folder / "rays" / "patches.csv", ["mitsuba", "difference"])
+    theirs = read_csv(folder / "path" / "cornell.csv", ["mitsuba"])
+    assert [row["mitsuba"] for row in rows] == [row["mitsuba"] for row in theirs]
+    assert all(abs(float(row["difference"].rstrip("%"))) < 1 for row in rows)

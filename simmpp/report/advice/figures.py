@@ -20,9 +20,9 @@ from simmpp.plot.curves import (
 from simmpp.report.page.figures.figure import Figure
 from simmpp.run import words
 from simmpp.studies.advise.advice import Advice
-from simmpp.studies.advise.answer import named, rounded_time
 from simmpp.studies.advise.memory_map import Place
 from simmpp.studies.advise.sensitivity import Swing
+from simmpp.studies.advise.told import named, rounded_time
 
 PS_PER_MS = 1e9
 CONSTANTS = 6

@@ -10,10 +10,10 @@ from simmpp.report.advice.figures import advice_figures
 from simmpp.report.page.figures.figure import figure_data
 from simmpp.report.page.template import rendered
 from simmpp.studies.advise.advice import Advice
-from simmpp.studies.advise.answer import rounded_time
 from simmpp.studies.advise.candidates import capacity_of
 from simmpp.studies.advise.memory_map import Place
 from simmpp.studies.advise.table import CANNOT_WIN
+from simmpp.studies.advise.told import rounded_time
 
 PAGE = "advise.html"
 

@@ -123,6 +123,8 @@ def _find(advice: Advice, run: Run, *, maps: bool) -> None:
         contest.run()
         advice.runs = run.count
         advice.verdict = contest.verdict()
+        if advice.chosen is not None and advice.chosen.has_credits:
+            advice.beyond_bytes = run.exceeds_bytes(advice.chosen.task_without_credits())
         study = study_of(advice, run)
         if study is not None:
             constants = constants_of(advice.config)

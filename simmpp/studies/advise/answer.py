@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
-from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.common.units import counted, format_ps
 from simmpp.common.yamlfile import written
 from simmpp.run import words
 from simmpp.studies.advise.advice import NODE_SECONDS, Advice
-from simmpp.studies.advise.candidates import Candidate, capacity_of
+from simmpp.studies.advise.answer_memory import credits_told, nothing_told, unfit_told
 from simmpp.studies.advise.confidence import LEAST_SEEDS
 from simmpp.studies.advise.sensitivity import Swing
-from simmpp.sweeps.intervals import MeanInterval
+from simmpp.studies.advise.told import (
+    compared,
+    listed,
+    named,
+    node_seconds,
+    rounded_time,
+    share_told,
+    time_told,
+    times_the_nodes,
+)
 
 TURNS_TOLD = 3
 """Constants that are told to change the advice, at most; the page shows more."""
-MOST_TOLD = 4
-"""Names in a list, before the rest is counted."""
 
 
 def sentences_of(advice: Advice) -> list[str]:
@@ -25,9 +32,9 @@ def sentences_of(advice: Advice) -> list[str]:
     of_a_part = [advice.left_out] if advice.left_out else []
     number = advice.verdict.chosen
     if number is None:
-        return [*_nothing(advice), *of_a_part, *_unfit(advice)]
+        return [*nothing_told(advice), *of_a_part, *unfit_told(advice)]
     told = [*_use(advice, number), *of_a_part, *_sure(advice)]
-    told += [*_next(advice, number), *_unfit(advice)]
+    told += [*_next(advice, number), *credits_told(advice), *unfit_told(advice)]
     return [*told, *_hangs_on(advice)]
 
 
@@ -46,25 +53,15 @@ def settings_of(advice: Advice) -> str:
     return "".join(f"{key}: {written(value)}\n" for key, value in nested.items())
 
 
-def named(candidate: Candidate, short: bool = False) -> str:
-    """``"concurrent dataflow (rows-used) on 16 PEs"``."""
-    flow = words.policy(candidate.policy.name)
-    name = candidate.setup.name
-    flow = "the " * flow.endswith("scene") + flow
-    called = flow if name == candidate.policy.name else f"{flow} ({name})"
-    where = words.said("processors", candidate.processors)
-    return f"{name} on {candidate.processors}" if short else f"{called} on {where}"
-
-
 # --- the parts ---
 
 
 def _use(advice: Advice, number: int) -> Iterator[str]:
     chosen, found = advice.fitting[number], advice.makespan_ps(number)
     bound = rounded_time(advice.bounds[number])
-    text = f"Use {named(chosen)}: {_time(found)}, of which computing alone takes {bound}"
+    text = f"Use {named(chosen)}: {time_told(found)}, of which computing alone takes {bound}"
     if advice.asked.goal == NODE_SECONDS:
-        text += f"; {_node_seconds(found.mean * chosen.processors)}"
+        text += f"; {node_seconds(found.mean * chosen.processors)}"
     yield f"{text}."
     if isinstance(advice.asked.goal, int) and not advice.verdict.is_within:
         yield (
@@ -90,17 +87,18 @@ def _sure(advice: Advice) -> Iterator[str]:
     claim = _claim(advice, of)
     is_drawn = any(advice.fitting[number].is_drawn for number in verdict.likely)
     if claim and is_drawn:
-        yield f"{words.capital(_share(verdict.sure))} sure, with {LEAST_SEEDS} seeds, that {claim}."
+        sure = words.capital(share_told(verdict.sure))
+        yield f"{sure} sure, with {LEAST_SEEDS} seeds, that {claim}."
     elif claim:
         yield f"{words.capital(claim)}; nothing about them is drawn, so seeds have no part in that."
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
             f" {given.n_kept} of {given.n_draws} machines:"
-            f" {_share(verdict.sure * given.kept)} sure{' of both' * is_drawn}."
+            f" {share_told(verdict.sure * given.kept)} sure{' of both' * is_drawn}."
         )
     if verdict.ties and not isinstance(asked.goal, int):
-        others = _listed(named(advice.fitting[n]) for n in verdict.ties)
+        others = listed(named(advice.fitting[n]) for n in verdict.ties)
         yield f"A tie within {float(asked.indifference):.0%} with {others}."
 
 
@@ -122,53 +120,10 @@ def _next(advice: Advice, number: int) -> Iterator[str]:
     runner_up, own = advice.fitting[others[0]], advice.makespan_ps(number)
     found = advice.makespan_ps(others[0])
     first = "Runner-up" if found.mean >= own.mean else "As good, but not as simple"
-    text = f"{first}: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
+    text = f"{first}: {named(runner_up)}: {time_told(found)}, {compared(found.mean / own.mean)}"
     if runner_up.processors != chosen.processors:
-        text += f", with {_times_the_nodes(runner_up.processors / chosen.processors)}"
+        text += f", with {times_the_nodes(runner_up.processors / chosen.processors)}"
     yield f"{text}."
-
-
-def _unfit(advice: Advice) -> Iterator[str]:
-    unfit = [candidate for candidate in advice.candidates if not candidate.fits]
-    if not unfit:
-        return
-    has = format_bytes(capacity_of(advice.config))
-    sizes = sorted({each.processors for each in advice.candidates})
-    nothing = [s for s in sizes if all(not c.fits for c in advice.candidates if c.processors == s)]
-    told = []
-    if nothing and advice.fitting:
-        least = min(c.least_bytes for c in unfit if c.processors == nothing[-1])
-        told.append(
-            f"anything on {_or(nothing)} PEs (at least {format_bytes(least)} on {nothing[-1]})"
-        )
-    alike: dict[tuple[str, str], list[str]] = {}
-    rest = [c for c in unfit if c.processors not in nothing]
-    for name in dict.fromkeys(c.setup.name for c in rest):
-        of_name = [c for c in rest if c.setup.name == name]
-        needs = dict.fromkeys(format_bytes(c.least_bytes) for c in of_name)
-        on = _or(c.processors for c in of_name)
-        alike.setdefault((on, " and ".join(needs)), []).append(name)
-    for (on, needs_of), names in alike.items():
-        told.append(f"{_listed(names)} on {on} (needs {needs_of} a node)")
-    if told:
-        yield f"Doesn't fit into {has}: {'; '.join(told)}."
-
-
-def _nothing(advice: Advice) -> Iterator[str]:
-    has = format_bytes(capacity_of(advice.config))
-    if advice.fitting:
-        yield "Nothing came to an end: no candidate can be advised."
-        return
-    best = min(advice.candidates, key=lambda each: (each.least_bytes, each.order))
-    yield (
-        f"Nothing fits into {has} a node. The least memory that would do is"
-        f" {format_bytes(best.least_bytes)}, for {named(best)}."
-    )
-    more = advice.least_nodes
-    if more is None:
-        yield f"With {has} a node no number of nodes that was looked at would do."
-    else:
-        yield f"With {has} a node it takes {named(more)}: the least nodes that would do."
 
 
 def _hangs_on(advice: Advice) -> Iterator[str]:
@@ -197,51 +152,6 @@ def _turns(advice: Advice, swing: Swing) -> Iterator[str]:
             yield f"{swing.constant.name} ({then} {side} {_rounded(swing, at)})"
 
 
-# --- words ---
-
-
 def _rounded(swing: Swing, value: int) -> str:
     """With three digits."""
     return swing.constant.text(int(float(f"{value:.3g}")))
-
-
-def _time(found: MeanInterval) -> str:
-    text = rounded_time(found.mean)
-    if found.low == found.high:
-        return text
-    if found.low != found.low:
-        return f"{text} (one seed)"
-    return f"{text} (95 %: {rounded_time(found.low)} to {rounded_time(found.high)})"
-
-
-def rounded_time(time_ps: float) -> str:
-    """With three digits."""
-    return format_ps(int(float(f"{time_ps:.3g}")))
-
-
-def _node_seconds(time_ps: float) -> str:
-    return f"{time_ps / 1e12:.3g} node-seconds"
-
-
-def _times_the_nodes(ratio: float) -> str:
-    known = {2.0: "twice the nodes", 0.5: "half the nodes", 0.25: "a quarter of the nodes"}
-    return known.get(ratio, f"{ratio:.3g} times the nodes")
-
-
-def _compared(ratio: float) -> str:
-    return f"{ratio - 1:.1%} longer" if ratio >= 1 else f"{1 - ratio:.1%} shorter"
-
-
-def _share(share: float) -> str:
-    """Never more than it can be known."""
-    return "more than 99 %" if share > 0.99 else f"{share * 100:.0f} %"
-
-
-def _or(numbers: Iterable[int]) -> str:
-    return words.any_of(map(str, numbers))
-
-
-def _listed(names: Iterable[str]) -> str:
-    every = list(names)
-    more = len(every) - MOST_TOLD
-    return words.any_of([*every[:MOST_TOLD], f"{more} others"] if more > 0 else every, "and")

@@ -86,6 +86,19 @@ class Candidate:
             return None
 
     @property
+    def has_credits(self) -> bool:
+        """Rays are sent only where there is room for them."""
+        bounds = self.config.memory.bounds
+        return bounds is not None and bounds.has_credits
+
+    def task_without_credits(self) -> Task:
+        """Its simulation with queues without end, which are only compared with the capacity."""
+        path = ("memory", "flow")
+        return task_of(
+            _point(changed(self.config, [("memory.flow", "none", path)]), 0), self.digest
+        )
+
+    @property
     def kind(self) -> tuple[str, int]:
         """Candidates of one kind behave alike."""
         return self.policy.name, self.processors

@@ -123,12 +123,12 @@ def _tried(config: Config, method: str, seeds: int) -> Config:
 
 
 def _time_tracing(full: Plan, journal: Journal, watcher: Watcher) -> None:
-    """Trace each picture anew, whatever is cached; rays of another renderer take no tracing."""
+    """Trace each picture anew, whatever is cached; other rays' time is not told."""
     firsts = {planned.task.digest: planned for planned in reversed(full.points)}
     for digest, first in firsts.items():
         config = first.point.config
-        load_scene = config.ray_source.scene
-        if digest in journal.trace_s or load_scene is None:
+        load_scene, is_picture = config.ray_source.scene, not config.ray_source.has_own_picture
+        if digest in journal.trace_s or load_scene is None or not is_picture:
             continue
         scene = load_scene()
         trace(scene, Picture(resolution=FEW_PIXELS))  # compiles, or loads what was compiled

@@ -21,7 +21,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 ENOUGH = 1e-13
 """Change of a bounce, as a share of the brightest side, below which there are no more."""
-MOST_BOUNCES = 100_000
+MOST_BOUNCES = 20_000
 
 
 class Gathering:
@@ -67,6 +67,19 @@ class Gathering:
         """The sides that all counted rays have left, and where they have landed."""
         sent, places = (np.concatenate(column) for column in zip(*self._pairs, strict=True))
         return sent, places
+
+    def require_end(self) -> None:
+        """Raise SceneError unless light from every side can get out or be absorbed somewhere."""
+        reflectance = self._room.patches.reflectance.repeat(2, 0)
+        if not (reflectance >= 1).any():
+            return
+        factors = form_factors(self._room.n_sides, *self.pairs)
+        ends = (reflectance < 1) | (factors.sum(axis=1) < 1 - ENOUGH)[:, None]
+        while (ends != (more := ends | (factors @ ends > 0))).any():
+            ends = more
+        shines = (self._room.patches.emitted > 0).any(axis=0)
+        if not ends[self._reached][:, shines].all():
+            raise self._room.endless()
 
     @property
     def brightness(self) -> Floats:

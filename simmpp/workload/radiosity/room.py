@@ -58,13 +58,11 @@ class Room(NamedTuple):
         """(n,) int64: the side that each ray lands on; -1 for none."""
         return landed(self.geometry, rays, hits)
 
-    def refuse_endless(self, lost: Ints) -> None:
-        """Raise SceneError for a colour of which nothing was ``lost`` (3,), and nothing will be."""
-        full = (self.patches.reflectance >= 1).all(axis=0)
-        if (full & (lost == 0) & (self.patches.emitted > 0).any(axis=0)).any():
-            problem = "the scene is closed and its patches reflect all light"
-            expected = "expected a reflectance below 1, or an opening"
-            raise SceneError(f"{problem}: {expected}", where=self.name)
+    def endless(self) -> SceneError:
+        """What to raise for light that never ends."""
+        problem = "light never ends: patches reflect all of it, and it can't get out"
+        expected = "expected a reflectance below 1, or an opening"
+        return SceneError(f"{problem}: {expected}", where=self.name)
 
 
 def room_of(scene: Scene, settings: Radiosity) -> Room:

@@ -22,6 +22,8 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BITS = 50
 """All emitted power is 2^50 to 2^51 units, so that no product of float64 loses one."""
+STALLED = 0.999
+"""Light that has more than this left after as many rounds as there are sides will never end."""
 UNIT_W = 2.0**-32
 """A unit as weights of rays have it: lamps together have about 2^18 W, whatever the scene's."""
 
@@ -42,6 +44,7 @@ class Shooting:
         self.absorbed, self.escaped = np.zeros((2, 3), np.int64)
         self._shots = np.zeros(room.n_sides, np.int64)
         self._side, self._n_rounds, self._is_over = -1, 0, False
+        self._left = int(self.unshot.sum())
 
     @property
     def residual(self) -> Fraction:
@@ -88,8 +91,10 @@ class Shooting:
         self.absorbed += arriving.sum(axis=0) - reflected.sum(axis=0)
         self._shots[self._side] += 1
         self._n_rounds += 1
-        if self._n_rounds == self._room.n_sides:
-            self._room.refuse_endless(self.absorbed + self.escaped)
+        if self._n_rounds % self._room.n_sides == 0:
+            before, self._left = self._left, int(self.unshot.sum())
+            if self._left > STALLED * before:
+                raise self._room.endless()
 
     @property
     def brightness(self) -> Floats:

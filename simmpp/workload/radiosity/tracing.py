@@ -56,8 +56,7 @@ def _gathered(room: Room, trace: Trace) -> Workload:
         gathering.take(room.landed(rays, _hits(batch)))
         batches += batch
     sent, places = gathering.pairs
-    if (places >= 0).all():
-        room.refuse_endless(np.zeros(3, np.int64))
+    gathering.require_end()
     pairs = np.unique((sent // 2 * n + places // 2)[places >= 0])
     return _workload(
         room,

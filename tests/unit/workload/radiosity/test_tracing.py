@@ -148,10 +148,18 @@ def test_the_digest_follows_what_decides() -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_light_that_never_ends_is_refused(method: str) -> None:
     white = Material((1.0, 1.0, 1.0))
-    settings = Radiosity(method=method, **SMALL)  # type: ignore[arg-type]
+    settings = Radiosity(method=method, patches="20%", rays=50)  # type: ignore[arg-type]
     lamp = dataclasses.replace(LAMP, colour=(1.0, 0.0, 0.0))
-    with pytest.raises(SceneError, match=r"room: the scene is closed and its patches reflect all"):
+    with pytest.raises(SceneError, match=r"room: light never ends: patches reflect all of it"):
         trace_patches(room_of(scene_of(white, lamp), settings), threads=1)
+    above = quad((3, 3, 10), (3, 7, 10), (7, 7, 10), (7, 3, 10), material=1)
+    grey = [Polygon(wall.vertices, None, 2) for wall in walls((0, 0, 0), (20, 20, 20), (0,) * 6)]  # type: ignore[union-attr]
+    inner = scene_of(white, lamp)
+    within = dataclasses.replace(
+        inner, objects=(*inner.objects, above, *grey), materials=(*inner.materials, GREY)
+    )
+    with pytest.raises(SceneError, match=r"light never ends"):
+        trace_patches(room_of(within, settings), threads=1)
     opened = dataclasses.replace(scene_of(white, lamp), objects=scene_of().objects[1:])
     trace_patches(room_of(opened, settings), threads=1)
 
