@@ -21,7 +21,10 @@ from typing import Any, TypeVar, cast
 
 import numba
 from filelock import FileLock
+from llvmlite.binding import Linkage
 from numba.core.caching import FunctionCache, _CacheLocator
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 
 from simmpp.common.cache import cache_folder
@@ -106,6 +109,58 @@ def _tell_of_cache(reason: str) -> None:
     warnings.warn(text, CacheWarning, stacklevel=2)
 
 
+class _Part(JITCodeLibrary):  # type: ignore[misc]
+    """Instructions of a kernel, as they were written.
+
+    They are optimised and made machine code once, with all that calls them. Left alone, numba does
+    so for each kernel by itself, and for all that it calls again: half the time of compiling.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Nothing yet."""
+
+    def _finalize_final_module(self) -> None:
+        """Callers may have them."""
+        self._finalized = True
+
+    @property
+    def codegen(self) -> _Part:
+        """Who is given Python's globals for the machine code that there isn't."""
+        return self
+
+    def set_env(self, name: str, environment: object) -> None:
+        """Nobody needs them."""
+
+
+class _Whole(JITCodeLibrary):  # type: ignore[misc]
+    """Instructions of what Python calls, with all that it calls, which nobody else can call.
+
+    So a kernel that is called from one place is put there.
+    """
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if function.linkage == Linkage.linkonce_odr:
+                function.linkage = Linkage.internal
+        super()._optimize_final_module()
+
+
+class _KernelCompiler(Compiler):  # type: ignore[misc]
+    """numba's compiler, for such parts."""
+
+    def __init__(self, typing: Any, target: Any, _library: object, *rest: Any) -> None:
+        super().__init__(typing, target, _Part(target.codegen(), "kernel"), *rest)
+
+
+class _WholeCompiler(Compiler):  # type: ignore[misc]
+    """The same, for what is whole."""
+
+    def __init__(self, typing: Any, target: Any, _library: object, *rest: Any) -> None:
+        whole = _Whole(target.codegen(), "whole")
+        whole.enable_object_caching()
+        super().__init__(typing, target, whole, *rest)
+
+
 class _Kernel(_Compiled):
     """Has no code that Python could call."""
 
@@ -130,7 +185,9 @@ def njit(function: Function) -> Function:
 
 
 def _cached(function: Function, options: dict[str, bool]) -> Function:
-    compiled: Any = _Compiled(function, targetoptions=OPTIONS | options)
+    compiled: Any = _Compiled(
+        function, targetoptions=OPTIONS | options, pipeline_class=_WholeCompiler
+    )
     with _kept_for(function) as kept:
         if kept:
             compiled._cache = _Kept(function)  # what enable_caching does with numba's own
@@ -147,7 +204,8 @@ def kernel(function: Function) -> Function:
     if numba.config.DISABLE_JIT:
         return function
     without = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return cast(Function, _Kernel(function, targetoptions=OPTIONS | without))
+    options = {"targetoptions": OPTIONS | without, "pipeline_class": _KernelCompiler}
+    return cast(Function, _Kernel(function, **options))
 
 
 def cfunc(signature: object, key: str) -> Callable[[Callable[..., object]], object]:

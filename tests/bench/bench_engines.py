@@ -20,7 +20,7 @@ import numpy as np
 import simmpp
 from simmpp.engine.result import Result
 from simmpp.machine.machine import Machine
-from simmpp.machine.torus import CONTENTIONS
+from simmpp.machine.torus import CONTENTIONS, LINKS
 from simmpp.placement.placement import Placement
 from simmpp.policy.policy import Packing
 from simmpp.workload.cache.store import workload_for
@@ -148,6 +148,33 @@ def contention() -> None:
         )
 
 
+def features() -> None:
+    """What features cost that change little or nothing, each run in turns with one without any.
+
+    ``capacity`` is one that never binds: credits are kept, and none is ever refused.
+    """
+    print("\nfeatures, Mountain5, compiled: CPU time / that of a run without them")
+    workload, machine, placement = mountain5(64, 256)
+    ample = simmpp.Memory(fraction=Fraction(1, 10), capacity="100 GB")
+    bounded = simmpp.place(workload, 64, ample, simmpp.PlacementRules(), 0)
+    cases = {
+        "none": (workload, machine, placement),
+        "capacity": (workload, machine, bounded),
+        "links": (workload, replace(machine, contention=LINKS), placement),
+        "thread": (workload, replace(machine, service="thread"), placement),
+        "nic": (workload, replace(machine, service="nic"), placement),
+        "noise": (workload, replace(machine, noise="1%"), placement),
+    }
+    print(f"{'policy':11}", *(f"{name:>9}" for name in cases))
+    for policy in ("object", "ray", "concurrent", "holders"):
+        times = dict.fromkeys(cases, math.inf)
+        for _ in range(2 * REPEATS):
+            for name, case in cases.items():
+                times[name] = min(times[name], run_s("compiled", case, policy)[0])
+        ratios = (f"{seconds / times['none']:9.3f}" for seconds in times.values())
+        print(f"{policy:11}", *ratios)
+
+
 def packing() -> None:
     """What messages of several parts cost, alternately with those of one; the shortest of runs."""
     print(
@@ -170,6 +197,7 @@ def packing() -> None:
 
 if __name__ == "__main__":
     main()
+    features()
     packing()
     contention()
     growth()

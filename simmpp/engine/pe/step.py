@@ -133,10 +133,7 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
-    """Make up to a quantum of tests on ready rays; returns the end of that work.
-
-    What a test finds is in the workload.
-    """
+    """Make up to a quantum of tests on ready rays; returns the end of that work."""
     pe = pes(s)[me]
     begin_ps = now_ps + s.probe_ps + s.compute_startup_ps
     pace, cost_ps = pace_of(s, me, now_ps), 0
@@ -159,13 +156,8 @@ def compute(s: Run, me: int, now_ps: int) -> int:
                 pe.cut = 1
                 break
             cost_ps += cost_of_test_ps(s, ray, obj)
-            if s.record_tests:
-                _note_test(s, ray, obj)
-            if s.leaves_n > 0 and leaves(s)[at] == 1:
-                leave(s, me, ray, obj)
+            _test(s, me, ray, obj, at)
             tests, at = tests + 1, at + 1
-            s.tests += 1
-            r.tested += 1
             if r.granted or s.keeps:
                 _use(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
         else:
@@ -205,8 +197,15 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
 
 
 @kernel
-def _note_test(s: Run, ray: int, obj: int) -> None:
-    tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+def _test(s: Run, me: int, ray: int, obj: int, at: int) -> None:
+    """One ray-object intersection, at that place of all itineraries; what it finds is in the
+    workload."""
+    if s.record_tests:
+        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+    s.tests += 1
+    if s.leaves_n > 0 and leaves(s)[at] == 1:
+        leave(s, me, ray, obj)
+    rays(s)[ray].tested += 1
 
 
 @kernel
