@@ -456,7 +456,10 @@ def _some_filling(case: Case, seed: int) -> Case:
     ]
     bare = placement_of(owners.tolist(), placement.pixel_pes.tolist(), len(nothing), nothing)
     filling = Filling(ranked.__getitem__, bool(rng.integers(2)))
-    given = {"transient": placement.transient, "transient_bytes": placement.transient_bytes}
+    given: dict[str, Any] = {
+        "transient": placement.transient,
+        "transient_bytes": placement.transient_bytes,
+    }
     placement = replace(
         bare, islands=placement.islands, capacity=placement.capacity, filling=filling, **given
     )

@@ -15,7 +15,15 @@ from rich.progress import TaskID
 from simmpp.commands.parts import options, short_cuts
 from simmpp.commands.parts.own_policies import tell_files
 from simmpp.commands.parts.pictures import until_of, write_picture, write_unfinished
-from simmpp.commands.parts.recording import Looks, Recorder, check_timeline, recorders_of, sink_of
+from simmpp.commands.parts.recording import (
+    Looks,
+    Recorder,
+    check_timeline,
+    recorders_of,
+    sink_of,
+    warn_of_window,
+)
+from simmpp.commands.parts.results import check_results, write_results
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import (
     FAILED,
@@ -31,7 +39,6 @@ from simmpp.commands.parts.tracing import workload
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
-from simmpp.common.units import format_ps
 from simmpp.config.config import Config, load_config
 from simmpp.engine.record.recording import Recording
 from simmpp.run.fitting import require_fitting
@@ -42,6 +49,7 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
+from simmpp.workload.describe import is_picture
 from simmpp.workload.sources import require_drawn
 
 
@@ -68,6 +76,11 @@ from simmpp.workload.sources import require_drawn
     "--until",
     metavar="TIME",
     help="With --picture: also what of it each policy has finished by then, such as '5 ms'.",
+)
+@options.path(
+    "--results",
+    "Write what comes of radiosity or particles, object by object: .csv or .parquet.",
+    metavar="FILE",
 )
 @options.path(
     "--timeline",
@@ -98,6 +111,7 @@ def run_command(
     out: Path | None,
     picture: Path | None,
     until: str | None,
+    results: Path | None,
     timeline: Path | None,
     window: str | None,
     figures: Path | None,
@@ -114,6 +128,7 @@ def run_command(
     tell_files(config)
     options.writable(picture, "--picture", ".png")
     until_ps = until_of(until, picture)
+    check_results(config, results)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -128,7 +143,7 @@ def run_command(
         )
     if figures and options.available_cores() > 1:
         start_server(PICTURES)  # loads matplotlib while the rays are traced
-    looks = Looks(picture, until_ps, timeline, window_ps, figures)
+    looks = Looks(picture, until_ps, results, timeline, window_ps, figures)
     run(config, out=out, looks=looks, verify=verify)
 
 
@@ -141,6 +156,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
     require_fitting(point)
     if looks.picture:
         write_picture(point, looks.picture)
+    if looks.results:
+        write_results(point, looks.results)
     runs: list[PolicyRun] = []
     try:
         with recorders_of(point, looks) as recorders:
@@ -151,7 +168,7 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
             write_record(record_of_run(point, runs), out / RECORD)
             write_rows(runs, point, out / RESULTS)
     _print(point, runs)
-    _warn_of_window(runs, looks)
+    warn_of_window(runs, looks)
     print_reading(config)
     unfinished: list[Path] = []
     if looks.picture and looks.until_ps is not None:
@@ -205,23 +222,10 @@ def _print(point: Point, runs: Sequence[PolicyRun]) -> None:
         say(note)
 
 
-def _warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
-    """Say for which runs a timeline has nothing, as they are over before its window begins."""
-    start_ps = looks.window_ps[0] if looks.window_ps else 0
-    over = [
-        f"{run.parameters.title} at {format_ps(run.result.makespan_ps)}"
-        for run in runs
-        if run.result.makespan_ps <= start_ps
-    ]
-    if over and looks.timeline:
-        told = f"nothing happens from {format_ps(start_ps)} on: {', '.join(over)} ended"
-        notice(f"warning: --timeline-window: {told}")
-
-
 def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> None:
     """Which there are now, and the command that goes on with them."""
     rows = [out / RECORD, out / RESULTS] if out else []
-    looked = (looks.picture, *unfinished, looks.timeline, looks.figures)
+    looked = (looks.picture, *unfinished, looks.results, looks.timeline, looks.figures)
     files = [*rows, *filter(None, looked)]
     if files:
         say()
@@ -233,13 +237,14 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
 def _verify(point: Point, runs: list[PolicyRun]) -> None:
     """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
     source, failed = point.config.ray_source, False
+    what = "the picture" if is_picture(point.workload) else "the result"
     nothing = np.zeros(0, np.int32)
     for run in runs:
         tests = (run.result.tested_rays, run.result.tested_objects)
         rays, objects = (nothing if column is None else column for column in tests)
         with at_work(f"verifying {run.parameters.title}"):
             problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else "the picture of its tests is the same"
+        verdict = f"differs: {problem}" if problem else f"{what} of its tests is the same"
         say(f"verify {run.parameters.title}: {verdict}")
         failed = failed or problem != ""
     if failed:

@@ -258,7 +258,8 @@ def _class_at(cls: type, path: KeyPath) -> type:
 def is_by_name(cls: type, key: str) -> bool:
     """Does a field hold a class of settings for each name that a user gives?"""
     known = fields_of(cls)
-    options = get_args(known[key].annotation) if key in known else ()
+    kind = known[key].annotation if key in known else None
+    options = (kind, *get_args(kind))
     return inner_class(cls, key) is not None and any(get_origin(each) is dict for each in options)
 
 

@@ -16,6 +16,7 @@ from simmpp.config.short_cut import ShortCut
 from simmpp.machine.constants import long_test
 from simmpp.policy.parameters import DEFAULT_POLICY
 from simmpp.scene.view import long_camera
+from simmpp.workload.particles.cells import named_cells
 from simmpp.workload.sources import long_scene
 
 Places = dict[KeyPath, Place]
@@ -24,6 +25,7 @@ Places = dict[KeyPath, Place]
 _LONG_FORMS: dict[KeyPath, Callable[[object], Any]] = {
     ("scene",): long_scene,
     ("scene", "camera"): long_camera,
+    ("scene", "cells"): named_cells,
     ("policy",): long_policies,
     ("machine", "test"): long_test,
 }

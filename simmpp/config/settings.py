@@ -206,7 +206,7 @@ class Settings(Strict):
 
     @model_validator(mode="after")
     def _one_thing_is_asked(self) -> Settings:
-        given = [key for key in ASKED if key in self.model_fields_set]
+        given = [key for key in ASKED if key in self.model_fields_set and getattr(self, key)]
         kind, asks = self.scene.kind
         for key in given:
             if key not in asks:

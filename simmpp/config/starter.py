@@ -25,9 +25,12 @@ EXAMPLES = {"policy.label": "eager"}
 """Of keys that have no default and whose text has no example."""
 CHOICES = ("machine.preset", "machine.shape", "machine.contention")
 """What is no constant of a machine."""
-LEFT_OUT = ("scene.", "radiosity", "particles", "policy.name", "policy.file", "policy.set")
-"""Ways to say a scene that are not the text, what stands in place of a picture, and what goes with
-files of one's own."""
+LEFT_OUT = (
+    *("scene.", "radiosity", "particles", "advise"),
+    *("policy.name", "policy.file", "policy.set"),
+)
+"""Ways to say a scene that are not the text, what stands in place of a picture, what is for another
+command, and what goes with files of one's own."""
 WIDTH = 92
 HEAD = """\
 # A configuration of simmpp. Lines such as "#seeds: [0]" say what holds without them, or, where

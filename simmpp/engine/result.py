@@ -17,6 +17,7 @@ from simmpp.common.displayed import Displayed
 from simmpp.common.documented import documented
 from simmpp.common.errors import ModelError
 from simmpp.engine.arrays.records import SINGLY
+from simmpp.engine.residuals import times_of_residuals
 from simmpp.engine.rounds import barriers, round_ends
 from simmpp.machine.messages import LOAD, OBJECT, RAYS, REQUEST
 from simmpp.machine.uneven import bound_of
@@ -85,6 +86,8 @@ class Result(Displayed):
     round_ends_ps: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     """(rounds,) int64: when the last ray of each round was finished; -1 where a run came to no end
     before."""
+    residuals_ps: dict[str, int] = field(default_factory=dict)
+    """When little was left to be done, of tables that say what is left: see ``residuals.LEFT``."""
     barriers: int = 0
     """Ends of rounds that others waited for."""
     barrier_ps: int = 0
@@ -232,7 +235,8 @@ def concluded(
         launch_ps=state.pes["launch_ps"].copy(),
         work_ps=work_ps,
         bound_ps=bound_of(work_ps, machine.speed, machine.processors),
-        round_ends_ps=round_ends(state),
+        round_ends_ps=(ends_ps := round_ends(state)),
+        residuals_ps=times_of_residuals(workload.round_residuals, ends_ps),
         barriers=n_barriers,
         barrier_ps=barrier_ps,
         round_messages=round_messages,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
-from simmpp.engine import columns, memory_use
+from simmpp.engine import columns, memory_use, residuals
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""
@@ -26,7 +26,7 @@ BY_USE = {
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""
-BY_ROWS = {"rounds": columns.ROUND_COLUMNS}
+BY_ROWS = {"rounds": columns.ROUND_COLUMNS, "residuals": tuple(residuals.LEFT)}
 """Likewise, of sweeps in which the first of them is above 0 in a row: only rays tell."""
 FURTHER = tuple(name for names in (*BY_USE.values(), *BY_ROWS.values()) for name in names)
 TEXTS = (memory_use.REASON,)

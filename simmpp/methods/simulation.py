@@ -7,6 +7,7 @@ import numpy as np
 from simmpp.common.files import Row
 from simmpp.engine.capacity import Needs, fits, lacking, needs_of
 from simmpp.engine.memory_use import COLUMNS, REASON
+from simmpp.engine.residuals import LEFT
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
 from simmpp.methods.case import Case
@@ -53,6 +54,8 @@ def integers(result: Result) -> dict[str, int]:
     of_memory = {} if use is None else {name: getattr(use, name) for name in COLUMNS}
     if use is not None and use.infeasible:
         return of_memory
-    names = [name for name in (*NUMBERS, *FURTHER) if name not in BY_USE[BOUNDED]]
+    others = {*BY_USE[BOUNDED], *LEFT}
+    names = [name for name in (*NUMBERS, *FURTHER) if name not in others]
     values = {name: np.atleast_1d(getattr(result, name)) for name in names}
-    return {name: sum(value.tolist()) for name, value in values.items()} | of_memory
+    sums = {name: sum(value.tolist()) for name, value in values.items()}
+    return sums | result.residuals_ps | of_memory

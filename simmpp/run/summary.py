@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
 from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
+from simmpp.run import words
 from simmpp.run.fitting import told
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.workload.describe import ROOTS_OF, primaries, roots
+from simmpp.workload.workload import PARTICLE
 
 Cell = Callable[[PolicyRun], str]
 
@@ -59,6 +63,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ]
     return [
         *lines,
+        *_residual_lines(runs),
         *_message_lines(runs),
         ("bytes sent", lambda run: format_bytes(run.result.bytes_sent)),
         ("rays sent", lambda run: f"{run.result.rays_sent}"),
@@ -69,6 +74,20 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
         ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
         ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+    ]
+
+
+def _residual_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
+    """When little was left to be done, where that is known."""
+
+    def cell(column: str, run: PolicyRun) -> str:
+        time_ps = run.result.residuals_ps.get(column)
+        return "-" if time_ps is None else format_ps(time_ps)
+
+    return [
+        (f"  until {100 * share:g} % is left", partial(cell, column))
+        for column, share in LEFT.items()
+        if any(column in run.result.residuals_ps for run in runs)
     ]
 
 
@@ -181,6 +200,14 @@ def _idle_at_first(point: Point) -> list[str]:
     return [f"{idle} of {counted(nb, 'PE')} start without a ray: the picture has {picture}"]
 
 
+def _other_words(point: Point) -> list[str]:
+    """What those who compute particles call the policies."""
+    if roots(point.workload) != ROOTS_OF[PARTICLE]:
+        return []
+    called = [f"{words.policy(name)} is {word}" for name, word in words.OF_PARTICLES.items()]
+    return [f"in the words of particle transport: {', '.join(called)}"]
+
+
 def _stuck(runs: Sequence[PolicyRun]) -> list[str]:
     """Runs that came to no end, as no PE may escape."""
     uses = [(run.parameters.title, run.result.memory) for run in runs]
@@ -193,7 +220,7 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
-    lines += [*_memory(point, runs), *_idle_at_first(point)]
+    lines += [*_memory(point, runs), *_idle_at_first(point), *_other_words(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

@@ -18,6 +18,12 @@ PAPER_WORDS = {
     "cost": "dataflow by estimated costs",
 }
 """Policies in the paper's words; a label of the user stays as it is."""
+OF_PARTICLES = {
+    "object": "cell (or mesh) passing",
+    "ray": "particle passing",
+    "replicated": "replication",
+}
+"""What they are called where cells are the objects and particles the rays (Branson, LANL)."""
 CAPACITY, UNBOUNDED = "memory.capacity", "none"
 """The key whose values are bytes, and its value where memory has no end."""
 ALONG = {

@@ -27,10 +27,15 @@ def roots(workload: Workload) -> str:
     return ROOTS_OF.get(kind, "primary rays")
 
 
+def is_picture(workload: Workload) -> bool:
+    """Are its roots primary rays?"""
+    return roots(workload) == "primary rays"
+
+
 def primaries(workload: Workload) -> str:
     """``512 x 512 primary rays``, ``40000 particles``, ``9000 rays of patches in 9 rounds``."""
     rows, columns = workload.picture
-    if roots(workload) in ROOTS_OF.values():
+    if not is_picture(workload):
         rounds = f" in {workload.n_rounds} rounds" if workload.n_rounds > 1 else ""
         return f"{workload.n_primaries} {roots(workload)}{rounds}"
     each = f"pixels with {workload.samples} " if workload.samples > 1 else ""

@@ -104,5 +104,5 @@ def test_what_is_no_workload() -> None:
     Path("d/own.yaml").write_text("scene: {workload: a.npz, size: 3}\n")
     assert refused("run", "d/own.yaml") == "d/own.yaml:1: scene: size goes with spd only"
     Path("d/own.yaml").write_text("scene: {workload: a.npz, nff: b.nff}\n")
-    one = "expected one of spd, nff, mesh, parts, workload, got nff and workload"
+    one = "expected one of spd, nff, mesh, parts, cells, workload, got nff and workload"
     assert refused("run", "d/own.yaml") == f"d/own.yaml:1: scene: {one}"

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.commands.parts import options
-from simmpp.commands.parts.terminal import progress_bars
+from simmpp.commands.parts.terminal import notice, progress_bars
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import PICTURES
+from simmpp.common.units import format_ps
 from simmpp.engine.record.log import Sink
 from simmpp.policy.parameters import PolicyParameters
 from simmpp.report.run_figures.recorder import FiguresRecorder
@@ -29,6 +30,7 @@ class Looks(NamedTuple):
 
     picture: Path | None
     until_ps: int | None
+    results: Path | None
     timeline: Path | None
     window_ps: tuple[int, int] | None
     figures: Path | None
@@ -42,6 +44,19 @@ def check_timeline(path: Path | None, window: tuple[int, int] | None) -> None:
         expected = f"expected a file {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}"
         raise ConfigError(f"--timeline: value {str(path)!r}: {expected}")
     options.writable(path, "--timeline")
+
+
+def warn_of_window(runs: Sequence[PolicyRun], looks: Looks) -> None:
+    """Say for which runs a timeline has nothing, as they are over before its window begins."""
+    start_ps = looks.window_ps[0] if looks.window_ps else 0
+    over = [
+        f"{run.parameters.title} at {format_ps(run.result.makespan_ps)}"
+        for run in runs
+        if run.result.makespan_ps <= start_ps
+    ]
+    if over and looks.timeline:
+        told = f"nothing happens from {format_ps(start_ps)} on: {', '.join(over)} ended"
+        notice(f"warning: --timeline-window: {told}")
 
 
 class Recorder(Protocol):

@@ -186,9 +186,14 @@ def _problems(cells: Cells) -> Iterator[str]:
         yield "mirrors: all sides, and nothing absorbs: expected a way for particles to end"
 
 
+def named_cells(value: object) -> object:
+    """The mapping that a preset's name is short for."""
+    return {"preset": value} if isinstance(value, str) else value
+
+
 def long_cells(value: object) -> object:
-    """The keys that a preset is short for, or a preset with some of them changed."""
-    given = {"preset": value} if isinstance(value, str) else value
+    """All keys of a preset, some of them changed."""
+    given = named_cells(value)
     if not isinstance(given, dict) or given.get("preset") not in tuple(PRESETS):
         return given
     keys, materials = PRESETS[given["preset"]], given.get("materials", {})

@@ -42,7 +42,9 @@ def _tracks(workload: Workload, done: NDArray[np.bool_] | None) -> NDArray[np.fl
     if done is not None:
         lengths = np.diff(workload.itinerary_offsets)
         deposits = deposits * np.repeat(done[workload.pixels], lengths)
-    return np.bincount(workload.itinerary_objects, deposits, workload.n_objects)
+    tracks: NDArray[np.float64] = np.zeros(workload.n_objects)
+    tracks += np.bincount(workload.itinerary_objects, deposits, workload.n_objects)
+    return tracks
 
 
 def _layer(cells: Cells, tracks: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -103,6 +103,7 @@ def _workload(cells: Cells, particles: Particles, grid: Grid, batches: list[Tabl
             object_bytes=np.full(n_cells, STATE_BYTES + GROUP_BYTES * cells.groups, np.int64),
             object_centroids=centroids(grid),
             root_homes=homes(grid, particles.seed, count),
+            object_results=np.full(n_cells, RESULT_BYTES, np.int64),
             test_deposits=rays.tracks,
         )
     )

@@ -24,7 +24,11 @@ COLOURS = ("red", "green", "blue")
 
 
 def drawn(room: Room, light: Floats) -> NDArray[np.uint8]:
-    """A picture of sides of that light (2 N, 3), each of one colour."""
+    """A picture of sides of that light (2 N, 3), each of one colour.
+
+    Its bytes are square roots of brightness, about as screens take them: what lamps light is far
+    darker than they are.
+    """
     view = Picture(
         resolution=room.settings.resolution,
         samples=SAMPLES,
@@ -33,7 +37,7 @@ def drawn(room: Room, light: Floats) -> NDArray[np.uint8]:
         reflection=False,
         refraction=False,
     )
-    return in_bytes(seen(room, view, light))
+    return in_bytes(np.sqrt(seen(room, view, light)))
 
 
 def seen(room: Room, view: Picture, light: Floats) -> Floats:

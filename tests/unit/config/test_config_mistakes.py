@@ -37,10 +37,13 @@ MISTAKES = [
     (S + S, "c.yaml:2: duplicate key 'scene', first on line 1"),
     ("processors: 8", "c.yaml:1: missing key 'scene'"),
     ("procesors: 8", "c.yaml:1: unknown key 'procesors': did you mean 'processors'?"),
-    ("scene: {}", "c.yaml:1: scene: expected one of spd, nff, mesh, parts, workload, got none"),
+    (
+        "scene: {}",
+        "c.yaml:1: scene: expected one of spd, nff, mesh, parts, cells, workload, got none",
+    ),
     (
         "scene: {spd: rings, nff: x}",
-        "c.yaml:1: scene: expected one of spd, nff, mesh, parts, workload, got spd and nff",
+        "c.yaml:1: scene: expected one of spd, nff, mesh, parts, cells, workload, got spd and nff",
     ),
     ("scene: {nff: x, size: 1}", "c.yaml:1: scene: size goes with spd only"),
     ("scene: {spd: x}", "c.yaml:1: scene.spd: value 'x': expected balls, "),

@@ -83,7 +83,8 @@ def test_unknown_keys(name: str, line: str) -> None:
 
 def test_keys_within_a_key() -> None:
     assert [key.name for key in find_keys("placement")] == [
-        "placement", "placement.owners", "placement.pixels", "placement.islands"
+        "placement", "placement.owners", "placement.pixels", "placement.islands",
+        "placement.rounds", "placement.tallies",
     ]  # fmt: skip
     assert [key.name for key in find_keys("sweep.memory.fraction")] == ["sweep"]
     assert "pack.rays.fixed" in CliRunner().invoke(main, ["keys", "machine.pack"]).stdout

@@ -62,7 +62,7 @@ def test_every_key_is_in_it_but_costs_files_and_what_is_no_picture() -> None:
     assert isinstance(data, dict)
     names = {key.name for key in listed_keys()}
     tops = {name for name in names if "." not in name}
-    assert set(data) == tops - {"radiosity", "particles"}
+    assert set(data) == tops - {"radiosity", "particles", "advise"}
     for part in ("picture", "memory", "placement", "check"):
         here = {name.partition(".")[2] for name in names if name.startswith(f"{part}.")}
         assert set(data[part]) == here - {"fraction"}

@@ -174,7 +174,7 @@ def test_a_camera_of_the_file_by_name_and_by_number() -> None:
         (
             "parts",
             [{"mesh": "a.obj"}],
-            "scene: expected one of spd, nff, mesh, parts, workload, got",
+            "scene: expected one of spd, nff, mesh, parts, cells, workload, got",
         ),
     ],
 )

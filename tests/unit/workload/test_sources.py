@@ -84,7 +84,7 @@ def test_a_generated_scene_is_its_text_read_back(files: Path) -> None:
             ConfigError,
             "quad.obj:lumps: value 'lumps': expected nodes, components",
         ),
-        ({}, ConfigError, "expected one of spd, nff, mesh, parts, workload, got none"),
+        ({}, ConfigError, "expected one of spd, nff, mesh, parts, cells, workload, got none"),
         ({"spd": "tree", "nff": "own.nff"}, ConfigError, "workload, got spd and nff"),
         (
             {"spd": "tree", "sise": 2},
