@@ -67,7 +67,7 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     if m.kind == USER:
         clock_ps = hear(s, me, message, clock_ps)
     elif m.kind == STEAL and m.purpose == FOR_PIXELS:
-        clock_ps = give_pixels(s, me, m.source, clock_ps)
+        clock_ps = give_pixels(s, me, m, clock_ps)
     elif m.kind == OBJECT or m.n > 0:  # of rays, or pixels
         get_on(pe)
     if s.steals and m.n > 0:

@@ -4,7 +4,8 @@ It asks the one of its island with the highest load that it knows of, equal ones
 if that has none to give the next one: each once in an idle spell, which only rays or pixels end,
 and one at a time. A question is a header; the answer says whose pixels, from which on, and how
 many: half of those that are left (rounded down, so one stays), the last ones. That is always one
-piece of ``pixels``, for who asks has none: it becomes the thief's.
+piece of ``pixels``, for who asks has none: it becomes the thief's. A spell ends with its round of
+rays, too, and pixels are given in the round in which they were asked for only.
 
 Why a run still ends: spells end with a message that brings rays or pixels, and who holds pixels
 starts one, as its queue is empty, before it asks again. So between two tests or finished rays each
@@ -36,7 +37,7 @@ def steal(s: Run, me: int, now_ps: int) -> int:
     pe.asked += 1
     pe.awaits = 1
     row = new_part(s, STEAL, pe.base + place, 0)
-    messages(s)[row].purpose = FOR_PIXELS
+    messages(s)[row].purpose, messages(s)[row].last = FOR_PIXELS, pe.round
     return send(s, me, row, now_ps, False)
 
 
@@ -64,10 +65,13 @@ def _known_load(s: Run, me: int, pe: Row, place: int) -> int:
 
 
 @kernel
-def give_pixels(s: Run, me: int, thief: int, now_ps: int) -> int:
-    """Answer a question with half of the pixels that are left; returns the end of that."""
-    pe = pes(s)[me]
-    n = (pe.pixel_end - pe.pixel) // 2
+def give_pixels(s: Run, me: int, question: Row, now_ps: int) -> int:
+    """Answer a question with half of the pixels that are left; returns the end of that.
+
+    With none if a round has begun since it was asked: then the thief may have some of its own.
+    """
+    pe, thief = pes(s)[me], question.source
+    n = (pe.pixel_end - pe.pixel) // 2 if question.last == pe.round else 0
     pe.pixel_end -= n
     pe.n_ready -= n
     pe.load -= n
