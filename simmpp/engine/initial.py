@@ -126,6 +126,7 @@ def _sizes(
         logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
         counted=nb if recording.counters else 0,
         bounded=placement.capacity is not None and placement.capacity.has_credits,
+        measured=placement.capacity is not None,
     )
 
 

@@ -136,6 +136,7 @@ class State:
             bytes=traffic["bytes"],
             sizes=at["sizes"].reshape(-1, SIZES),
             load_ps=at["slices"]["load_ps"],
+            held=at["held_bins"].reshape(-1, BINS),
         )
 
     def _logged(self) -> NDArray[np.void]:

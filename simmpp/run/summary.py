@@ -15,6 +15,7 @@ from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
 from simmpp.run import words
 from simmpp.run.fitting import told
+from simmpp.run.held import memory_lines
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
 from simmpp.run.profit import ratio
 from simmpp.workload.describe import ROOTS_OF, primaries, roots
@@ -72,8 +73,7 @@ def _lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  most", lambda run: f"{utilisation(run).max():.1%}"),
         ("imbalance", lambda run: f"{imbalance(run):.3f}"),
         ("most rays on a PE", lambda run: f"{run.result.peak_rays}"),
-        ("most bytes on a PE", lambda run: format_bytes(run.result.peak_bytes)),
-        ("  of objects", lambda run: format_bytes(run.result.peak_object_bytes)),
+        *memory_lines(runs),
     ]
 
 

@@ -83,11 +83,8 @@ def _over_seeds(
 
 def profits_of(both: Sequence[tuple[Row, Row]], column: str) -> list[float]:
     """The ratio of a column of each seed's reference and run; none where one is not known."""
-    return [
-        ratio(base[column], row[column])
-        for base, row in both
-        if base[column] != "" and row[column] != ""
-    ]
+    known = [(base.get(column, ""), row.get(column, "")) for base, row in both]
+    return [ratio(above, below) for above, below in known if above != "" and below != ""]
 
 
 def _bounds(

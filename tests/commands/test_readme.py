@@ -19,6 +19,7 @@ GUIDES = [
     OWN,
     ROOT / "configs" / "README.md",
     ROOT / "experiments" / "motion" / "README.md",
+    ROOT / "simmpp" / "sweeps" / "README.md",
 ]
 """Those with quick commands."""
 MOST_LINES = 200

@@ -31,6 +31,7 @@ from simmpp.engine.arrays.records import (
     CREDIT,
     EVENT,
     EVENT_KEY,
+    HELD,
     MESSAGE,
     MISS,
     MOMENT,
@@ -83,6 +84,8 @@ class Sizes:
     """PEs whose time is counted: nb, or 0 without counters."""
     bounded: bool = False
     """Credits say how many rays may be sent."""
+    measured: bool = False
+    """There is a capacity to compare with."""
 
 
 class Array(NamedTuple):
@@ -186,6 +189,7 @@ ARRAYS = {
     "traffic": Array(TRAFFIC, lambda n: n.counted**2),  # from PE i to j at nb i + j
     "sizes": Array(I8, lambda n: len(MESSAGE_KINDS) * SIZES if n.counted else 0),  # of each kind
     "slices": Array(SLICE, lambda n: n.counted),
+    "held_bins": Array(HELD, lambda n: n.counted * BINS if n.measured else 0),  # BINS per PE
     # of the compiled event loop
     "heap": Array(EVENT_KEY, lambda n: 0),  # grows
     "processes": Array(PROCESS, lambda n: 2 * n.nb),  # PEs, then their threads

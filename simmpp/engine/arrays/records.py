@@ -247,6 +247,15 @@ MOMENT = np.dtype(
     ]
 )
 """What all PEs together did in a bin."""
+HELD = np.dtype(
+    [
+        ("seen", "i8"),  # 1: the PE had an instant in the bin
+        ("fetched", "i8"),  # bytes at the end of the last one, as in ROOM
+        ("rays", "i8"),
+        ("unread", "i8"),
+    ]
+)
+"""What a PE holds besides its resident objects, where memory ends."""
 TRAFFIC = np.dtype([("messages", "i8"), ("bytes", "i8")])
 """From one PE to another, with headers."""
 SLICE = np.dtype(

@@ -32,7 +32,7 @@ from simmpp.engine.arrays.views import (
 )
 from simmpp.engine.pe.bounds.admission import can_unpack, unpack
 from simmpp.engine.pe.bounds.escape import ESCAPED
-from simmpp.engine.pe.bounds.rooms import has_ready, note_memory
+from simmpp.engine.pe.bounds.rooms import has_ready, note_memory, rays_held
 from simmpp.engine.pe.dispatch import dispatch
 from simmpp.engine.pe.fetched import touch, unpin
 from simmpp.engine.pe.misses import file_ray, is_in_memory
@@ -42,7 +42,7 @@ from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_rea
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
 from simmpp.engine.pe.talking import get_on, rest, wake
-from simmpp.engine.record.counters import note_finished, note_load, note_work
+from simmpp.engine.record.counters import note_finished, note_held, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
 
@@ -75,6 +75,8 @@ def step(s: Run, me: int, phase: int, message: int, now_ps: int) -> int:
         next_ps = _begin(s, me, phase, message, now_ps)
     if s.measures:
         note_memory(s, me)
+        if s.record_counters:
+            note_held(s, me, rays_held(s, me), now_ps)
     if s.phase != WOKEN:
         pe.busy_until_ps = max(pe.busy_until_ps, next_ps)
     if next_ps > CLOCK_LIMIT_PS:

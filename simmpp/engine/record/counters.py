@@ -20,10 +20,12 @@ from simmpp.engine.arrays.records import BINS, NONE, SIZES, Row, Run
 from simmpp.engine.arrays.views import (
     communication_bins,
     compute_bins,
+    held_bins,
     message_marks,
     messages,
     moments,
     pes,
+    rooms,
     sizes,
     slices,
     traffic,
@@ -55,6 +57,8 @@ class Counters(NamedTuple):
     """(6, SIZES): messages of each kind whose bytes, with the header, have k binary digits."""
     load_ps: Ints
     """(nb,): rays held times how long."""
+    held: NDArray[np.void]
+    """(nb, BINS) HELD: what each PE held at the end of each bin; (0, BINS) without a capacity."""
 
 
 def first_width(least_ps: int) -> int:
@@ -97,6 +101,19 @@ def note_load(s: Run, me: int, now_ps: int) -> None:
     held = slices(s)[me]
     held.load_ps += held.load * (now_ps - held.since_ps)
     held.load, held.since_ps = pes(s)[me].load, now_ps
+
+
+@kernel
+def note_held(s: Run, me: int, n_rays: int, now_ps: int) -> None:
+    """What a PE holds is something else from now on; of a bin the last counts."""
+    _widen(s, now_ps)
+    here, room = held_bins(s)[me * BINS + (max(now_ps - 1, 0) >> s.bin_width)], rooms(s)[me]
+    here.seen, here.fetched, here.rays, here.unread = (
+        1,
+        room.fetched,
+        n_rays * s.ray_bytes,
+        room.unread,
+    )
 
 
 @kernel
@@ -143,6 +160,8 @@ def _widen(s: Run, time_ps: int) -> None:
         for first in range(0, s.processors * BINS, BINS):
             _join_pairs(compute_bins(s), first)
             _join_pairs(communication_bins(s), first)
+            if s.measures:
+                _join_held(held_bins(s), first)
         for i in range(BINS):
             _join_moments(moments(s), i)
 
@@ -153,6 +172,23 @@ def _join_pairs(bins: Ints, first: int) -> None:
     for i in range(BINS // 2):
         bins[first + i] = bins[first + 2 * i] + bins[first + 2 * i + 1]
     bins[half:end] = 0
+
+
+@kernel
+def _join_held(of_all: NDArray[np.void], first: int) -> None:
+    for i in range(BINS):
+        to = of_all[first + i]
+        if 2 * i < BINS:
+            a, b = of_all[first + 2 * i], of_all[first + 2 * i + 1]
+            last = b if b.seen else a
+            to.seen, to.fetched, to.rays, to.unread = (
+                last.seen,
+                last.fetched,
+                last.rays,
+                last.unread,
+            )
+        else:
+            to.seen = 0
 
 
 @kernel

@@ -23,6 +23,7 @@ from simmpp.machine.topology import (
     topology_of,
 )
 from simmpp.machine.torus import Torus
+from simmpp.report.run_figures.fullest import Fullest, fullest_of
 from simmpp.run.point import Point, PolicyRun
 
 OF_NETWORKS: dict[type, tuple[str, ...]] = {Torus: ("torus",), Blocks: ("links",), Tree: ("links",)}
@@ -78,6 +79,8 @@ class Motion:
     """(rows, columns): links crossed for them."""
     pixel_owner: Ints
     """(rows, columns): the PE that each pixel starts on."""
+    fullest: Fullest | None = None
+    """Where memory has a capacity."""
     picture: NDArray[np.uint8] | None = None
     """(rows, columns, 3) uint8: what was rendered, if there is a scene."""
 
@@ -85,9 +88,10 @@ class Motion:
     def pictures(self) -> list[str]:
         """Names of the pictures that there are of it."""
         networks = OF_NETWORKS.get(type(self.topology), ())
-        # Roots that are no pixels, such as particles, are all in one row.
-        pixels = ["pixels"] if len(self.pixel_owner) > 1 else []
-        return ["activity", "progress", *networks, "traffic", "memory", *pixels]
+        # Roots that are no pixels, such as particles, are all in one column.
+        pixels = ["pixels"] if self.pixel_owner.shape[1] > 1 else []
+        fullest = ["fullest"] if self.fullest else []
+        return ["activity", "progress", *networks, "traffic", "memory", *fullest, *pixels]
 
     @property
     def times_ps(self) -> Ints:
@@ -147,6 +151,7 @@ def motion_of(point: Point, run: PolicyRun, picture: NDArray[np.uint8] | None = 
         pixel_cost_ps=pixel_costs(point),
         pixel_hops=pixel_hops(point, result),
         pixel_owner=pixel_owners(point),
+        fullest=fullest_of(point, run, n_bins),
         picture=picture,
     )
 

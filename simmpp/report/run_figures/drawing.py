@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from simmpp.common.units import format_ps
+from simmpp.common.units import format_bytes, format_ps
 from simmpp.machine.messages import MESSAGE_KINDS
 from simmpp.plot.matplotlib_panels import SETTINGS, STYLES, save
 from simmpp.report.run_figures.data import Motion
@@ -172,6 +172,36 @@ def _memory(figure: Figure, motion: Motion) -> None:
     axes.legend(frameon=False, ncols=2, fontsize=8, loc="upper center")
 
 
+def _fullest(figure: Figure, motion: Motion) -> None:
+    """What the fullest PE holds over time, its parts over each other, and the capacity."""
+    fullest = motion.fullest
+    if fullest is None:
+        raise ValueError("expected a run on PEs whose memory has a capacity")
+    figure.set_size_inches(7.5, 4.1)
+    axes, edges = figure.subplots(), motion.times_ps * MS
+    bottom = np.zeros(len(edges) - 1)
+    parts: dict[str, tuple[Any, str, str]] = {
+        "objects for good": (fullest.resident, BLUE, ""),
+        "kept free: requests, escape": (fullest.kept_free, "0.8", ""),
+        "fetched objects": (fullest.fetched, ORANGE, ""),
+        "rays, started and to come": (fullest.rays, GREEN, "////"),
+        "rays received": (fullest.unread, VERMILION, "...."),
+    }
+    for label, (amount, color, hatch) in parts.items():
+        top = bottom + amount / 1e3
+        style = {"color": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
+        axes.stairs(top, edges, baseline=bottom, fill=True, label=label, **style)
+        bottom = top
+    capacity, most = fullest.capacity_bytes / 1e3, max(bottom.max(), 1e-9)
+    if capacity <= 2 * most:
+        axes.axhline(capacity, color="k", linestyle="--", linewidth=1, label="capacity")
+    axes.set(xlabel="time (ms)", ylabel="kB", ylim=(0, 1.35 * max(most, min(capacity, 2 * most))))
+    axes.set_xlim(0, max(edges[-1], 1e-9))
+    told = f"PE {fullest.pe}, the fullest, with {format_bytes(fullest.capacity_bytes)}"
+    axes.set_title(f"{motion.title}: memory of {told}")
+    axes.legend(frameon=False, ncols=3, fontsize=8, loc="upper center")
+
+
 def _pixels(figure: Figure, motion: Motion) -> None:
     """What pixels cost, how far their rays and objects went, and whose they are."""
     picture = motion.picture
@@ -202,6 +232,7 @@ DRAWINGS: dict[str, Callable[[Figure, Motion], None]] = {
     "links": draw_tree,
     "traffic": _traffic,
     "memory": _memory,
+    "fullest": _fullest,
     "pixels": _pixels,
 }
 """Each picture by its name, those of networks included."""

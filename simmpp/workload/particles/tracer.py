@@ -89,7 +89,7 @@ def _workload(cells: Cells, particles: Particles, grid: Grid, batches: list[Tabl
         Workload(
             name=cells.name,
             digest=digest_of(cells, particles),
-            picture=(1, count),
+            picture=(count, 1),
             kinds=np.full(n, PARTICLE, np.uint8),
             parents=rays.parents,
             child_offsets=np.cumsum(np.insert(n_children, 0, count), dtype=np.int32),

@@ -61,7 +61,7 @@ def _gathered(room: Room, trace: Trace) -> Workload:
     pairs = np.unique((sent // 2 * n + places // 2)[places >= 0])
     return _workload(
         room,
-        (1, len(sent)),
+        (len(sent), 1),
         batches,
         root_homes=np.concatenate(homes),
         object_results=OF_COUNT * np.bincount(pairs // n, minlength=n),

@@ -9,12 +9,14 @@ from builders import random_case, with_capacity
 
 import simmpp
 from simmpp.common.errors import ConfigError
+from simmpp.common.units import format_bytes
 from simmpp.config.config import config_from_mapping
 from simmpp.engine.capacity import fits, needs_of, split
 from simmpp.placement.rooms import Capacity
 from simmpp.run.fitting import fittings, require_fitting, told
 from simmpp.run.inputs import workload_of
-from simmpp.run.point import make_point
+from simmpp.run.point import make_point, run_point
+from simmpp.run.summary import measures
 from simmpp.sweeps.plan import plan_of
 from simmpp.sweeps.worker import run_task
 
@@ -111,6 +113,16 @@ def test_run_says_what_fits_and_what_it_needs() -> None:
     require_fitting(point)
     assert {each.parameters.name: each.fits for each in fittings(point)}["ray"] is False
     assert any("does not fit" in line and "ray" in line for line in told(point))
+    runs = list(run_point(point))
+    table = dict(measures(runs))
+    assert [run.parameters.title for run in runs] == ["object"]
+    use = runs[0].result.memory
+    assert use is not None
+    held = use.peak_resident + use.peak_fetched + use.peak_ray_queue + use.peak_receive
+    assert table["the fullest PE"] == [format_bytes(held)]
+    assert held <= least["object"]
+    assert table["escapes"] == [f"{use.escapes}"] != ["0"]
+    assert "most bytes on a PE" not in table  # counts what is not started
     small = config_from_mapping({**given, "memory": {"fraction": 0.3, "capacity": "100 B"}})
     with pytest.raises(ConfigError, match=r"memory.capacity: value '100 B': expected at least"):
         require_fitting(make_point(small, workload_of(small)))

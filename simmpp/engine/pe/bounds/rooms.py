@@ -41,10 +41,16 @@ def release_rays(s: Run, me: int, first: int, n: int) -> None:
 
 
 @kernel
+def rays_held(s: Run, me: int) -> int:
+    """Rays that those started and taken in may become; without credits, these."""
+    pe = pes(s)[me]
+    return rooms(s)[me].reserved if s.bounded else pe.load - (pe.pixel_end - pe.pixel)
+
+
+@kernel
 def note_memory(s: Run, me: int) -> None:
     """Is what a PE holds more than ever before?"""
-    room, pe = rooms(s)[me], pes(s)[me]
-    n_rays = room.reserved if s.bounded else pe.load - (pe.pixel_end - pe.pixel)
+    room, n_rays = rooms(s)[me], rays_held(s, me)
     total = room.resident + room.fetched + n_rays * s.ray_bytes + room.unread
     if total > room.peak:
         room.peak, room.peak_fetched = total, room.fetched

@@ -96,7 +96,7 @@ def test_cells_and_parts_are_those_of_a_slow_follower(cells: Cells, how: dict[st
 def test_the_workload_is_sound() -> None:
     workload = trace(SHIELD, SPLIT)
     check(workload, "followed")
-    assert (workload.picture, workload.samples) == ((1, SPLIT.count), 1)
+    assert (workload.picture, workload.samples) == ((SPLIT.count, 1), 1)
     assert set(workload.kinds) == {PARTICLE}
     assert workload.n_rays > 2 * SPLIT.count
     firsts = workload.itinerary_objects[workload.itinerary_offsets[: SPLIT.count]]
