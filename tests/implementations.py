@@ -86,6 +86,8 @@ def outcome_of(result: Result) -> Outcome:
         tested=list(zip(tested_rays, tested_objects, strict=True)),
         ray_hops=[] if result.ray_hops is None else result.ray_hops.tolist(),
         ray_ends=[] if result.ray_ends_ps is None else result.ray_ends_ps.tolist(),
+        tally_messages=result.tally_messages,
+        reduction_ps=result.reduction_ps,
         round_messages=result.round_messages,
         round_ends=result.round_ends_ps.tolist(),
         memory={} if use is None else {name: getattr(use, name) for name in memory_use.COLUMNS},

@@ -33,6 +33,7 @@ from simmpp.sweeps.executors import start_server
     metavar="SECONDS",
     help="After that long, what is best so far is advised.",
 )
+@click.option("--figures", is_flag=True, help="With --out: its pictures as .png and .svg, too.")
 @click.option("--list", "lists", is_flag=True, help="Tell what there is to choose from, and stop.")
 @options.no_code
 @options.path("--out", "Folder for advise.csv and advise.html.")
@@ -42,6 +43,7 @@ def advise_command(
     cluster: str | None,
     overrides: tuple[str, ...],
     seconds: float | None,
+    figures: bool,
     lists: bool,
     may_run: bool,
     out: Path | None,
@@ -57,6 +59,8 @@ def advise_command(
     """
     if workers is not None and cluster is not None:
         raise ConfigError("expected --workers or --cluster, got both")
+    if figures and out is None:
+        raise ConfigError("--figures: expected --out, the folder that they go to")
     workers = workers or options.available_cores()
     if workers > 1 and cluster is None and not lists:
         start_server()
@@ -88,7 +92,7 @@ def advise_command(
     print_advice(advice)
     notice(f"{advice.runs + advice.further_runs} runs, {time.monotonic() - began_s:.0f} s")
     if out is not None:
-        write_advice(advice, out)
+        write_advice(advice, out, figures=figures)
     if advice.interrupt is not None:
         raise advice.interrupt
     if advice.chosen is None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import click
-import numpy as np
 from rich.progress import TaskID
 
 from simmpp.commands.parts import options, short_cuts
@@ -26,8 +24,6 @@ from simmpp.commands.parts.recording import (
 from simmpp.commands.parts.results import check_results, write_results
 from simmpp.commands.parts.tables import numbers
 from simmpp.commands.parts.terminal import (
-    FAILED,
-    at_work,
     go_on,
     notice,
     progress_bars,
@@ -36,6 +32,7 @@ from simmpp.commands.parts.terminal import (
     wrote,
 )
 from simmpp.commands.parts.tracing import workload
+from simmpp.commands.parts.verifying import verify_runs
 from simmpp.commands.reading import print_reading
 from simmpp.common.folders import RUN
 from simmpp.common.modules import PICTURES
@@ -49,7 +46,6 @@ from simmpp.run.summary import heading, measures, notes
 from simmpp.sweeps.executors import start_server
 from simmpp.sweeps.winners.answer import answer_of
 from simmpp.sweeps.worker import warm_up
-from simmpp.workload.describe import is_picture
 from simmpp.workload.sources import require_drawn
 
 
@@ -79,7 +75,7 @@ from simmpp.workload.sources import require_drawn
 )
 @options.path(
     "--results",
-    "Write what comes of radiosity or particles, object by object: .csv or .parquet.",
+    "Write what comes of the rays, object by object: .csv or .parquet.",
     metavar="FILE",
 )
 @options.path(
@@ -102,7 +98,7 @@ from simmpp.workload.sources import require_drawn
 @click.option(
     "--verify",
     is_flag=True,
-    help="Make the picture again from the tests that the simulated PEs did, and compare.",
+    help="Make picture and results again from the tests that the simulated PEs did, and compare.",
 )
 def run_command(
     config_path: Path,
@@ -128,7 +124,7 @@ def run_command(
     tell_files(config)
     options.writable(picture, "--picture", ".png")
     until_ps = until_of(until, picture)
-    check_results(config, results)
+    check_results(results)
     options.claim(out, "--out", RUN)
     window_ps = None if window is None else options.window_of(window, "--timeline-window")
     check_timeline(timeline, window_ps)
@@ -175,7 +171,8 @@ def run(config: Config, *, out: Path | None, looks: Looks, verify: bool) -> None
         unfinished = write_unfinished(point, runs, looks.picture, looks.until_ps)
     _print_files(out, looks, unfinished)
     if verify:
-        _verify(point, runs)
+        has_results = looks.results is not None or bool(point.workload.object_results.any())
+        verify_runs(point, runs, tallies=has_results)
 
 
 def _simulate(
@@ -232,20 +229,3 @@ def _print_files(out: Path | None, looks: Looks, unfinished: Sequence[Path]) -> 
     wrote(*files)
     if out:
         go_on("report", out)
-
-
-def _verify(point: Point, runs: list[PolicyRun]) -> None:
-    """Say for each policy whether its PEs made the picture; exit 1 unless all did."""
-    source, failed = point.config.ray_source, False
-    what = "the picture" if is_picture(point.workload) else "the result"
-    nothing = np.zeros(0, np.int32)
-    for run in runs:
-        tests = (run.result.tested_rays, run.result.tested_objects)
-        rays, objects = (nothing if column is None else column for column in tests)
-        with at_work(f"verifying {run.parameters.title}"):
-            problem = source.verify(point.config.picture, point.workload, rays, objects)
-        verdict = f"differs: {problem}" if problem else f"{what} of its tests is the same"
-        say(f"verify {run.parameters.title}: {verdict}")
-        failed = failed or problem != ""
-    if failed:
-        sys.exit(FAILED)

@@ -26,6 +26,7 @@ from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted, format_bytes, shown, write_bytes
 from simmpp.engine.residency import resident_bytes
+from simmpp.engine.tallies import copy_bytes
 from simmpp.machine.machine import POLLED, Machine
 from simmpp.placement.placement import Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room
@@ -40,7 +41,7 @@ class Needs:
     """Bytes that a policy needs on the PEs, whatever their capacity."""
 
     resident: Ints
-    """(nb,) int64: own objects and replicas."""
+    """(nb,) int64: own objects and replicas, and a copy of all tallies where these are reduced."""
     escape: Ints
     """(nb,) int64: the largest object that is not resident; 0 where nothing can ask."""
     control: int
@@ -88,6 +89,7 @@ def needs_of(
     """What a policy needs on each PE of a placement."""
     rules, nb, bounds = policy.rules, placement.processors, placement.capacity
     resident = resident_bytes(workload, placement, rules.all_resident)
+    resident = resident + copy_bytes(workload, placement)
     largest = _largest_lacking(workload, placement, rules.all_resident)
     lacks, others = bool((largest >= 0).any()), placement.island - 1
     escapes = bounds is not None and bounds.has_escape

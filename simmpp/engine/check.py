@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple
+from collections.abc import Iterator
+from dataclasses import is_dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,13 +50,8 @@ def _check_workload(workload: Workload) -> None:
 
 
 def _check_machine(machine: Machine) -> None:
-    numbers: list[object] = list(astuple(machine))
-    while numbers:
-        value = numbers.pop()
-        if isinstance(value, tuple):
-            numbers.extend(value)
-        elif not isinstance(value, str | dict):
-            require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
+    for value in _numbers(machine):
+        require_whole(f"machine {machine.name}", value, 0, CLOCK_LIMIT_PS)
     require_word(f"machine {machine.name}: contention", machine.contention, CONTENTIONS)
     require_word(f"machine {machine.name}: service", machine.service, SERVICES)
     if not 1 <= machine.quantum <= MOST_COUNT or min(machine.shape) < 1:
@@ -63,6 +59,18 @@ def _check_machine(machine: Machine) -> None:
     require_whole(f"machine {machine.name}: least_tests", machine.least_tests, 0)
     check_unlike(machine.speed, machine.noise, machine.straggler, machine.processors)
     topology_of(machine)  # looks itself
+
+
+def _numbers(value: object) -> Iterator[object]:
+    """What a machine is made of, but for words."""
+    if is_dataclass(value):
+        for part in vars(value).values():
+            yield from _numbers(part)
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from _numbers(part)
+    elif not isinstance(value, str | dict):
+        yield value
 
 
 def _check_placement(workload: Workload, machine: Machine, placement: Placement) -> None:

@@ -28,6 +28,8 @@ USER_COLUMNS = ("user_messages", "user_dropped")
 """Likewise, in which a policy sends messages of its own."""
 ROUND_COLUMNS = ("barriers", "barrier_ps", "round_messages")
 """Likewise, with rays in rounds that others waited for."""
+TALLY_COLUMNS = ("tally_messages", "deposits", "reduction_ps")
+"""Likewise, with tallies of which something is sent."""
 STEAL_COLUMNS = ("steal_messages",)
 """Likewise, in which PEs steal pixels."""
 UNEVEN_COLUMNS = ("launch_ps", "work_ps", "bound_ps")

@@ -17,10 +17,11 @@ from simmpp.engine.event_heap import (
     INSTANT,
     PE_BITS,
     ROUND,
+    close,
     heap_lacks_room,
-    pop,
     push,
     replace_first,
+    take,
 )
 from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
@@ -33,7 +34,7 @@ from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking
 
 FIRST_EVENTS, MOST_EVENTS = 1 << 10, 1 << 20
-"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: twice as many each
+"""Handled in one call, in which Ctrl-C and a point's timeout are not heard: four times as many each
 time, until that takes CALL_S; half as many if it takes twice as long, as hooks may be slow."""
 CALL_S = 0.1
 FINISHED, PAUSED, FULL, STARVED = range(4)
@@ -75,7 +76,7 @@ class CompiledRun:
         records = ("logs", "record_tests", "record_counters", "record_ends", "measures", "uneven")
         # PEs that have nothing to do may have something to say.
         talks = self.state["idle"] != 0 or self.state["steals"] != 0
-        is_more = talks or self.state["n_rounds"] > 1
+        is_more = talks or self.state["n_rounds"] > 1 or self.state["leaves_n"] > 0
         if is_more or any(self.state[name] for name in records) or not run_alone(self.state.runs):
             return False
         if self._progress is not None:
@@ -91,7 +92,7 @@ class CompiledRun:
 def _as_many(n_events: int, took_s: float) -> int:
     """How many events are handled at the next call."""
     if took_s < CALL_S:
-        return min(2 * n_events, MOST_EVENTS)
+        return min(4 * n_events, MOST_EVENTS)
     return max(n_events // 2, 1) if took_s > 2 * CALL_S else n_events
 
 
@@ -120,7 +121,7 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
         if rank >= HEAD:
             move_first(s)
             continue
-        pop(s)
+        take(s)
         if message != NONE:
             _arrive(s, message, time_ps)
         elif rank == ROUND:
@@ -131,6 +132,7 @@ def _run(runs: NDArray[np.void], n_events: int) -> int:
             _step(s, rank - INSTANT, time_ps)
         else:
             _serve(s, rank - INSTANT - s.processors, time_ps)
+        close(s)
     return PAUSED
 
 
@@ -215,11 +217,11 @@ def _serve(s: Run, me: int, now_ps: int) -> None:
 @kernel
 def _go_on(s: Run, me: int, next_ps: int) -> None:
     """What a PE or thread has sent travels; its next instant comes, or it sleeps."""
-    if s.n_sent > 0:
-        _carry(s)
     processes(s)[me].asleep = 1 if next_ps == SLEEP or s.phase == WOKEN else 0
     if next_ps != SLEEP:
         _schedule_instant(s, me, next_ps)
+    if s.n_sent > 0:
+        _carry(s)
 
 
 @kernel

@@ -54,8 +54,26 @@ def heap_lacks_room(s: Run) -> bool:
 
 
 @kernel
+def take(s: Run) -> None:
+    """The first event is being handled: its place is for the first that is pushed meanwhile."""
+    s.taken = 1
+
+
+@kernel
+def close(s: Run) -> None:
+    """It has been handled; if nothing was pushed its place is closed."""
+    if s.taken:
+        s.taken = 0
+        pop(s)
+
+
+@kernel
 def push(s: Run, time_ps: int, rank: int, number: int, message: int) -> None:
     """Add an event to the binary heap."""
+    if s.taken:
+        s.taken = 0
+        replace_first(s, time_ps, rank, number, message)
+        return
     events, at = heap(s), s.n_events
     s.n_events += 1
     while at > 0:

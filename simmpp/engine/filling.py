@@ -30,7 +30,8 @@ def filled(
         return placement, needs
     rooms = split(needs, bounds, capacity_bytes(bounds, needs)).replicas
     full = fill(placement, filling, workload.object_bytes, rooms)
-    return full, replace(needs, replicas=resident_bytes(workload, full, False) - needs.resident)
+    before, after = (resident_bytes(workload, one, False) for one in (placement, full))
+    return full, replace(needs, replicas=after - before)
 
 
 def effective_fraction(

@@ -35,6 +35,7 @@ from simmpp.engine.residency import (
 )
 from simmpp.engine.rounds import first_roots, roots_at_once, round_arrays, round_scalars
 from simmpp.engine.state import State
+from simmpp.engine.tallies import deposit_arrays, sends_deposits
 from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.service import copies
@@ -71,7 +72,7 @@ def new_state(
     arrays = allocated(_sizes(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
-    arrays |= round_arrays(workload, placement)
+    arrays |= round_arrays(workload, placement) | deposit_arrays(workload, placement)
     arrays |= room_arrays(placement, machine, needs)
     wants_holders = policy.to_holders or reads(policy, "holders")
     arrays |= holder_arrays(workload, placement, wanted=wants_holders)
@@ -106,9 +107,11 @@ def _sizes(
     nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
     # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
     sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
+    leaves = sends_deposits(workload, placement)
+    sent += nb if leaves else 0  # a batch of deposits as well
     each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
     known = nb * placement.island
-    talks = parameters.rules.talks or parameters.steals
+    talks = parameters.rules.talks or parameters.steals or leaves
     pairs = known if talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
@@ -118,7 +121,8 @@ def _sizes(
         misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),
         peers=1 + pairs,
         sent=sent,
-        messages=min(sent, n_objects + 2 * nb + 1),
+        messages=2 * min(sent, n_objects + 2 * nb + 2),  # so that one more step finds room
+        deposits=leaves,
         talks=parameters.rules.talks,
         steals=parameters.steals,
         tested=workload.n_tests if recording.tests else 0,
@@ -249,6 +253,7 @@ def _of_the_policy(
         "sample_ps": parameters.sample_ps or 0,
         "next_sample_ps": parameters.sample_ps or 0,
         "merge_requests": parameters.merge_requests,
+        "deposits_from": parameters.batch,
         "packing": PACKING[parameters.packing],
     }
 

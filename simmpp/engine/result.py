@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # who only reads results needs no numba
     from simmpp.engine.memory_use import MemoryUse
     from simmpp.engine.record.counters import Counters
     from simmpp.engine.state import State
+    from simmpp.engine.tallies import Reduction
     from simmpp.machine.machine import Machine
     from simmpp.workload.workload import Workload
 
@@ -94,6 +95,13 @@ class Result(Displayed):
     """Time of them all, from the last ray's end until every PE knew."""
     round_messages: int = 0
     """Messages of barriers, and of reductions that rounds began with."""
+    tally_messages: int = 0
+    """Messages of deposits, or of the reduction in which the copies of all tallies are added."""
+    deposits: int = 0
+    """Deposits in them."""
+    reduction_ps: int = 0
+    """Time of that reduction, when the last ray is finished; in the makespan, and in
+    communication_ps of every PE."""
     rules_never_fired: tuple[str, ...] = ()
     """Rules that the policy has but that never sent or asked: "send", "ask"."""
     memory: MemoryUse | None = None
@@ -125,7 +133,8 @@ class Result(Displayed):
     @property
     def messages(self) -> int:
         """Messages sent, of all kinds."""
-        own = self.user_messages + self.steal_messages + self.round_messages
+        own = self.user_messages + self.steal_messages
+        own += self.round_messages + self.tally_messages
         return sum(self.messages_by_kind) + own
 
     @property
@@ -188,6 +197,7 @@ def concluded(
     use: MemoryUse | None,
     machine: Machine,
     workload: Workload,
+    reduction: Reduction,
     work_ps: int | None = None,
 ) -> Result:
     """Clip the accounts at the makespan and check that the machine lost nothing.
@@ -204,7 +214,9 @@ def concluded(
     compute_ps = state.pes["compute_ps"].copy()
     waiting_ps = makespan_ps - compute_ps - communication_ps
     work_ps = int(compute_ps.sum()) if work_ps is None else work_ps
-    (*sent, user_messages, steal_messages), bytes_sent = state.sent_until(makespan_ps)
+    (*sent, user_messages, steal_messages, deposit_messages), bytes_sent = state.sent_until(
+        makespan_ps
+    )
     n_barriers, barrier_ps, round_messages = barriers(state, workload, machine)
     sent_by_kind = (sent[REQUEST], sent[OBJECT], sent[RAYS], sent[LOAD])
     parts_by_kind = _parts(state, sent_by_kind)
@@ -213,16 +225,16 @@ def concluded(
     return Result(
         policy=policy,
         engine=engine,
-        makespan_ps=makespan_ps,
+        makespan_ps=makespan_ps + reduction.time_ps,
         messages_by_kind=sent_by_kind,
         parts_by_kind=parts_by_kind,
         messages_received=state["received"],
-        bytes_sent=bytes_sent + round_messages * machine.header_bytes,
+        bytes_sent=bytes_sent + round_messages * machine.header_bytes + reduction.n_bytes,
         rays=state["rays_done"],
         tests=state["tests"],
         rays_sent=state["rays_sent"],
         compute_ps=compute_ps,
-        communication_ps=communication_ps,
+        communication_ps=communication_ps + reduction.time_ps,
         waiting_ps=waiting_ps,
         service_ps=state.pes["service_ps"] - late_ps,
         pe_peak_rays=state.pes["peak_rays"].copy(),
@@ -240,6 +252,9 @@ def concluded(
         barriers=n_barriers,
         barrier_ps=barrier_ps,
         round_messages=round_messages,
+        tally_messages=deposit_messages + reduction.messages,
+        deposits=state["deposited"],
+        reduction_ps=reduction.time_ps,
         rules_never_fired=_never_fired(state, parts_by_kind),
         memory=use,
         log=log,

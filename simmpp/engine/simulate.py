@@ -20,6 +20,7 @@ from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.result import Result, concluded
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import starved
+from simmpp.engine.tallies import reduction_of
 from simmpp.machine.limits import beyond_the_clock, check_counters, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement
@@ -63,7 +64,7 @@ def simulate(
     """
     policy = policy_of(policy)
     _check(workload, machine, placement, engine, ready_order)
-    require_known(workload, placement, policy)
+    require_known(workload, machine, placement, policy)
     require_kind("record", record, Recording)
     collector = Collector()
     recording = replace(record, log=collector) if record.log is True else record
@@ -93,9 +94,10 @@ def simulate(
     state.close_log()
     rows = collector.rows() if record.log is True else None
     use = memory_use(state, placement.capacity, needs)
+    reduction = reduction_of(workload, machine, placement)
     work_ps = total_compute_ps(workload, machine) if machine.is_uneven else None
     return concluded(
-        state, run.arrivals, policy.title, engine, rows, use, machine, workload, work_ps
+        state, run.arrivals, policy.title, engine, rows, use, machine, workload, reduction, work_ps
     )
 
 

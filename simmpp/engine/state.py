@@ -36,10 +36,11 @@ class State:
         self.arrays: dict[str, NDArray[Any]] = {}
         self.runs = np.zeros(1, RUN)
         """(1,) RUN: the argument of every compiled function of the model."""
-        for name, value in parameters.items():
-            self.runs[name] = value
+        values = dict.fromkeys(RUN.fields or (), 0) | parameters
         for name, array in arrays.items():
-            self._put(name, array)
+            self.arrays[name] = array = np.ascontiguousarray(array, ARRAYS[name].dtype)
+            values[f"{name}_at"], values[f"{name}_n"] = array.ctypes.data, len(array)
+        self.runs[0] = tuple(values.values())  # at once, for each by itself takes a while
         first = len(PARAMETERS) + len(COUNTERS)
         self._room_lacking = _room_entry()
         self.report = self.runs.view(np.int64)[first : first + len(REPORT)]

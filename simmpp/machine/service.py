@@ -60,7 +60,7 @@ LOAD_BYTES = 8
 
 def copies(machine: Machine) -> tuple[list[CopyCost], list[CopyCost]]:
     """What a PE, or its thread, pays for packing each kind of message, and for unpacking it."""
-    own = (USER_COPIED_AS, USER_COPIED_AS)  # messages of a policy's own, and for pixels
+    own = (USER_COPIED_AS, USER_COPIED_AS, RAYS)  # of a policy's own, for pixels, deposits
     pack, unpack = ([*of, *(of[kind] for kind in own)] for of in (machine.pack, machine.unpack))
     if machine.service == NIC:
         for kind in (REQUEST, OBJECT, LOAD):

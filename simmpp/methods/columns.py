@@ -26,7 +26,11 @@ BY_USE = {
 }
 """Further ones, of sweeps in which a point makes use of something (``PolicyParameters.uses``,
 ``Machine.uses``)."""
-BY_ROWS = {"rounds": columns.ROUND_COLUMNS, "residuals": tuple(residuals.LEFT)}
+BY_ROWS = {
+    "rounds": columns.ROUND_COLUMNS,
+    "tallies": columns.TALLY_COLUMNS,
+    "residuals": tuple(residuals.LEFT),
+}
 """Likewise, of sweeps in which the first of them is above 0 in a row: only rays tell."""
 FURTHER = tuple(name for names in (*BY_USE.values(), *BY_ROWS.values()) for name in names)
 TEXTS = (memory_use.REASON,)

@@ -5,11 +5,13 @@ The time of all PEs together, nb x makespan, is told in parts that add up to it 
 - *compute*: tests and rays. That is the bound, which no way of sending messages changes, but who
   computes where speeds differ.
 - *launches*: startups of computing, and what lanes of an accelerator add that are left empty.
+- *reductions*: the adding up of tallies at the end.
 - *startups*: what messages cost their two PEs whatever their size, fixed costs of packing and
   unpacking included; with a thread what the PEs pay.
 - *copying*: the rest of communication, which is packing and unpacking by the byte, and probes.
 - *one hot PE*: nb x (busy time of the busiest PE - that of the next, or the mean if larger).
 - *imbalance*: nb x (busy time of the next, or the mean if larger, - the mean).
+- *barriers*: that time of rounds, as far as even the busiest PE waits.
 - *latency*: nb x (makespan - busy time of the busiest PE), when even that one waits: for messages
   on their way, and for those who answer. Of that, the part that flights are latency. Flights are
   the mean of those between all pairs of PEs (``flights``): rows don't say who sent to whom.
@@ -41,11 +43,12 @@ from simmpp.run.flights import mean_flight
 
 COMPUTE, LAUNCHES = "compute", "launches"
 STARTUPS, COPYING = "startups", "copying"
+REDUCTIONS, BARRIERS = "reductions", "barriers"
 HOT, IMBALANCE, LATENCY, BANDWIDTH = "one hot PE", "imbalance", "latency", "bandwidth"
 COMMUNICATION, WAITING = "communication", "waiting"
 """Startups and copying; the four that follow them."""
-SENT = (STARTUPS, COPYING, COMMUNICATION)
-PARTS = (COMPUTE, LAUNCHES, *SENT, HOT, IMBALANCE, LATENCY, BANDWIDTH, WAITING)
+SENT = (REDUCTIONS, STARTUPS, COPYING, COMMUNICATION)
+PARTS = (COMPUTE, LAUNCHES, *SENT, HOT, IMBALANCE, BARRIERS, LATENCY, BANDWIDTH, WAITING)
 KINDS = ("request", "object", "ray", "load")
 NEAR_THE_BOUND = 0.9
 """Share of compute from which little else is left to be gained."""
@@ -146,6 +149,8 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
     total_ps = numbers["communication_ps"]
     if costs is None:
         return {COMMUNICATION: total_ps}
+    reductions_ps = processors * (numbers.get("reduction_ps") or 0)
+    total_ps -= reductions_ps
     parts = [numbers.get(f"{kind}_parts") or numbers[f"{kind}_messages"] for kind in KINDS]
     fixed_ps = sum(n * each for n, each in zip(parts, costs.fixed_ps, strict=True))
     counts = (numbers[f"{kind}_messages"] for kind in KINDS)
@@ -154,8 +159,12 @@ def _sent(numbers: Numbers, processors: int, costs: MessageCosts | None) -> dict
     own_ps = costs.startups_ps[RAYS] + costs.fixed_ps[REQUEST]
     of_own = (numbers.get(name) or 0 for name in ("user_messages", "steal_messages"))
     each_ps += sum(of_own) * own_ps
+    if reductions_ps == 0:  # deposits are sent as rays are
+        of_rays_ps = costs.startups_ps[RAYS] + costs.fixed_ps[RAYS]
+        each_ps += (numbers.get("tally_messages") or 0) * of_rays_ps
     startups_ps = min(total_ps, each_ps + fixed_ps)
-    return {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
+    sent = {STARTUPS: startups_ps, COPYING: total_ps - startups_ps}
+    return {REDUCTIONS: reductions_ps, **sent} if reductions_ps else sent
 
 
 def _waits(
@@ -171,6 +180,8 @@ def _waits(
     busy_ps = sorted(c + m for c, m in zip(compute_ps, communication_ps, strict=True))
     next_ps = max(nb * busy_ps[-2] if nb > 1 else 0, sum(busy_ps))  # times nb, as all the others
     nobody_ps = nb * (numbers["makespan_ps"] - busy_ps[-1])
+    barriers_ps = min(nobody_ps, nb * (numbers.get("barrier_ps") or 0))
+    nobody_ps -= barriers_ps
     flights_ps = numbers["messages"] * costs.flight_ps
     rate = costs.bytes_per_s
     transfers_ps = numbers["bytes_sent"] * PS_PER_S // rate if rate else 0
@@ -178,6 +189,7 @@ def _waits(
     return {
         HOT: nb * busy_ps[-1] - next_ps,
         IMBALANCE: next_ps - sum(busy_ps),
+        **({BARRIERS: barriers_ps} if barriers_ps else {}),
         LATENCY: latency_ps if transfers_ps else nobody_ps,
         BANDWIDTH: nobody_ps - latency_ps if transfers_ps else 0,
     }
@@ -209,11 +221,13 @@ def _help(numbers: Numbers, is_owner: bool) -> dict[str, str]:
     return {
         COMPUTE: "more PEs or faster tests: little else is left to gain",
         LAUNCHES: "more rays at each go: a larger machine.quantum, fewer PEs, a larger picture",
+        REDUCTIONS: "fewer or smaller results, or placement.tallies: send",
         STARTUPS: fewer,
         COPYING: f"fewer bytes: {lighter}",
         COMMUNICATION: fewer,
         HOT: deal,
         IMBALANCE: deal,
+        BARRIERS: "fewer and larger rounds, several at a time (placement.rounds), fewer PEs",
         LATENCY: "more rays at once on each PE: fewer PEs, a larger picture",
         BANDWIDTH: f"faster links, or fewer bytes: {lighter}",
         WAITING: "find out for what, as simmpp run --out tells",

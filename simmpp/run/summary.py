@@ -13,7 +13,7 @@ from simmpp.engine.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL
-from simmpp.run import words
+from simmpp.run import rounds, words
 from simmpp.run.fitting import told
 from simmpp.run.held import memory_lines
 from simmpp.run.point import Point, PolicyRun, ceiling_of, reference_of
@@ -111,6 +111,7 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
     packs, talks, steals = (
         any(use in run.parameters.uses for run in runs) for use in ("packs", "talks", "steals")
     )
+    has_tallies = any(run.result.tally_messages for run in runs)
     of_its_own: list[tuple[str, Cell]] = [
         ("  of the policy's own", lambda run: f"{run.result.user_messages}"),
         ("    not sent, too many", lambda run: f"{run.result.user_dropped}"),
@@ -124,6 +125,8 @@ def _message_lines(runs: Sequence[PolicyRun]) -> list[tuple[str, Cell]]:
         ("  rays", lambda run: f"{run.result.ray_messages}"),
         ("  loads", lambda run: f"{run.result.load_messages}"),
         *(of_its_own if talks else []),
+        *([("  of barriers", lambda run: f"{run.result.round_messages}")] if base.barriers else []),
+        *([("  of tallies", lambda run: f"{run.result.tally_messages}")] if has_tallies else []),
         *([("  for pixels", lambda run: f"{run.result.steal_messages}")] if steals else []),
         *(parts if packs else []),
     ]
@@ -220,7 +223,8 @@ def notes(point: Point, runs: Sequence[PolicyRun]) -> list[str]:
     of = "" if not point.machine.speed else " (the sum of speeds)"
     bound = f"bound: total compute / {float(speed):g}{of} = {format_ps(point.bound_ps)}"
     lines = [bound, *told(point), *_stuck(runs), _best_classical(runs)]
-    lines += [*_memory(point, runs), *_idle_at_first(point), *_other_words(point)]
+    lines += [*rounds.told(point, runs), *_memory(point, runs)]
+    lines += [*_idle_at_first(point), *_other_words(point)]
     lines += [
         f"{run.parameters.title}: its {rule} rule never fired"
         for run in runs

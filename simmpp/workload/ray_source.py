@@ -43,10 +43,6 @@ class RaySource(Protocol):
     def can_draw(self) -> bool:
         """What comes of the rays can be drawn, and verified."""
 
-    @property
-    def has_results(self) -> bool:
-        """What comes of the rays is a table."""
-
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """What the workload is called, and its digest, without tracing it."""
 
@@ -80,7 +76,6 @@ class SceneSource:
     scene: Callable[[], Scene]
     has_own_picture: bool = False
     can_draw: bool = True
-    has_results: bool = False
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The scene's name; the digest of all that the tracer would read."""
@@ -135,7 +130,6 @@ class FileSource:
     scene: None = None
     has_own_picture: bool = True
     can_draw: bool = False
-    has_results: bool = False
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The file's stem; the digest of what the file holds, which has to be read for it."""

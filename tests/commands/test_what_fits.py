@@ -101,7 +101,8 @@ def test_which_policies_of_200_gb_fit_on_how_many_nodes(
         "The replicated scene does not fit in all 5 cases (4 to 64 PEs): each PE lacks 168 GB.",
         f"{flows}: each PE lacks 18.2 GB.",  # a quarter of it all, and one object more
     )
-    page = simmpp("report", "o") and Path("o/report.html").read_text()
+    assert simmpp("report", "o").exit_code == 0
+    page = Path("o/report.html").read_text()
     for sentence in said:
         assert sentence in done.output
         assert sentence in page

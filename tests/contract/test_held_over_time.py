@@ -29,7 +29,7 @@ def recorded(case: Case, engine: str = "compiled") -> Result:
     return simulate(
         *(case.workload, case.machine, case.placement, case.policy),
         engine=engine,
-        ready_order=case.ready_order,  # type: ignore[arg-type]
+        ready_order=case.ready_order,
         record=Recording(counters=True, hops=True),
     )
 
@@ -94,7 +94,7 @@ def test_what_is_held_fits_and_both_engines_say_so(seed: int) -> None:
     for part in PARTS:
         assert held[0][part].tolist() == held[1][part].tolist(), part
     needs = needs_of(case.workload, case.machine, case.placement, case.policy)
-    used = needs.permanent + sum(held[0][part] for part in PARTS).max(axis=1)
+    used = needs.permanent + np.sum([held[0][part] for part in PARTS], axis=0).max(axis=1)
     bounds, use = case.placement.capacity, runs[0].memory
     assert bounds is not None and use is not None
     if bounds.has_credits:

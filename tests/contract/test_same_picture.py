@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
-from typing import get_args
+from typing import Literal, get_args
 
 import numpy as np
 import pytest
 
 import simmpp
+from simmpp.engine.capacity import needs_of
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES
 from simmpp.placement.placement import Owners, Pixels, Residents
+from simmpp.placement.rooms import Capacity
 from simmpp.policy.parameters import CEILING, POLICIES
 from simmpp.workload.trace.shading import render
 from simmpp.workload.trace.verify import verify
@@ -53,6 +55,24 @@ def test_the_tests_of_every_run_make_the_picture(spec: str) -> None:
                 assert result.tested_objects is not None
                 found = verify(scene, PICTURE, workload, result.tested_rays, result.tested_objects)
                 assert found is None, f"{policy} {rules} {memory}: {found}"
+
+
+@pytest.mark.parametrize("steal", ["none", "half"])
+def test_the_picture_is_the_same_at_every_capacity(steal: Literal["none", "half"]) -> None:
+    scene = simmpp.load_scene("mountain:3")
+    workload, machine = simmpp.trace(scene, PICTURE), simmpp.make_machine(processors=PROCESSORS)
+    memory, rules = simmpp.Memory(fraction="30%", capacity="least"), simmpp.PlacementRules()
+    placement = simmpp.place(workload, PROCESSORS, memory, rules, seed=0)
+    for name in POLICIES:
+        policy = replace(CONCURRENT, name=name, steal=steal)
+        least = needs_of(workload, machine, placement, policy).least_bytes
+        for more in (0, 200, 1000, 5000, 10**6):
+            within = replace(placement, capacity=Capacity(least + more))
+            noted = Recording(tests=True)
+            run = simmpp.simulate(workload, machine, within, policy, record=noted)
+            assert run.tested_rays is not None and run.tested_objects is not None
+            found = verify(scene, PICTURE, workload, run.tested_rays, run.tested_objects)
+            assert found is None, f"{policy} {more}: {found}"
 
 
 def test_a_test_left_out_shows() -> None:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import floor
 
 from simmpp.machine.machine import UNLIMITED, CopyCost, Machine
-from simmpp.machine.messages import RAYS, REQUEST, STEAL, USER
+from simmpp.machine.messages import DEPOSIT, RAYS, REQUEST, STEAL, USER
 from simmpp.workload.workload import CONE, MESH, POLYGON, SPHERE, Workload
 
 PS_PER_S = 10**12
@@ -45,9 +45,10 @@ def unpacking(machine: Machine, kind: int, payload_bytes: int) -> int:
 
 
 def _copying(machine: Machine, costs: tuple[CopyCost, ...], kind: int, n_bytes: int) -> int:
-    if machine.service == "nic" and kind not in (RAYS, USER, STEAL):
+    if machine.service == "nic" and kind not in (RAYS, USER, STEAL, DEPOSIT):
         return 0
-    return copy_ps(costs[REQUEST if kind in (USER, STEAL) else kind], n_bytes)
+    alike = {USER: REQUEST, STEAL: REQUEST, DEPOSIT: RAYS}
+    return copy_ps(costs[alike.get(kind, kind)], n_bytes)
 
 
 def intersection_ps(machine: Machine, workload: Workload, obj: int, ray: int = -1) -> int:

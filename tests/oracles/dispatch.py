@@ -20,6 +20,7 @@ class Dispatch(Views):
     def send_all(self, time: int, pe: PE) -> int:
         """Send all that may be sent from a time on; returns the end of that."""
         pe.clock = time
+        deposits = self.batches(pe, self.nothing_else(pe))
         decisions = self.decisions(pe)
         # One by one, what has been decided departs before the next decision; else all are made
         # before the first message is packed.
@@ -29,6 +30,8 @@ class Dispatch(Views):
             messages = self.packed(pe, list(decisions))
         for destination, parts in messages:
             pe.clock = self.send(pe.clock, pe, destination, parts)
+        for owner, batch in deposits:
+            pe.clock = self.send(pe.clock, pe, owner, [batch])
         if self.policy.load_info == "piggyback" and pe.refresh_allowed:
             self.refresh(pe)
         for other in self.due_credits(pe):

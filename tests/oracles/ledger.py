@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from oracles.state import PE, Message
-from simmpp.machine.messages import MESSAGE_KINDS, OBJECT, RAYS, REQUEST, STEAL, USER
+from simmpp.machine.messages import DEPOSIT, MESSAGE_KINDS, OBJECT, RAYS, REQUEST, STEAL, USER
 
 
 class Slice(NamedTuple):
@@ -85,6 +85,8 @@ class Outcome:
     """Links crossed for each ray: by itself, or by a request and an object that it waited for."""
     ray_ends: list[int]
     """When each ray was finished."""
+    tally_messages: int = 0
+    reduction_ps: int = 0
     round_messages: int = 0
     """Of barriers and reductions."""
     round_ends: list[int] = field(default_factory=list)
@@ -109,6 +111,8 @@ class Ledger:
     tested: list[tuple[int, int]] = field(default_factory=list)
     finished_ps: list[int] = field(default_factory=list)
     """The ends of finished rays."""
+    deposited_ps: list[int] = field(default_factory=list)
+    """When batches of deposits were received."""
     ray_hops: list[int] = field(default_factory=list)
     ray_ends: list[int] = field(default_factory=list)
     dropped: int = 0
@@ -118,8 +122,8 @@ class Ledger:
 
     @property
     def makespan_ps(self) -> int:
-        """The end of the last ray's last cost."""
-        return max(self.finished_ps, default=0)
+        """The end of the last ray's last cost, or of the receipt of the last deposits."""
+        return max([*self.finished_ps, *self.deposited_ps], default=0)
 
     def pay(self, account: str, pe: int, clock: int, cost: int) -> int:
         """Write down a cost; returns the time when it has been paid."""
@@ -193,6 +197,7 @@ class Ledger:
             rays_sent=sum(m.n_rays for m in sent),
             user_messages=sum(m.kind == USER for m in sent),
             user_dropped=self.dropped,
+            tally_messages=sum(m.kind == DEPOSIT for m in sent),
             steal_messages=sum(m.kind == STEAL for m in sent),
             parts_by_kind=(parts[0], parts[1], parts[2], parts[3]),
             compute_ps=compute,

@@ -45,7 +45,8 @@ class Simulation(Serving):
         }
         while self.queue:
             (time, *_), what, whom = heapq.heappop(self.queue)
-            if self.rays_left == 0 and time >= self.ledger.makespan_ps:
+            is_done = self.rays_left == 0 and not any(self.outstanding.values())
+            if is_done and time >= self.ledger.makespan_ps:
                 return
             done = len(self.ledger.tested) + len(self.ledger.finished_ps)
             handlers[what](time, whom)
@@ -123,6 +124,7 @@ class Simulation(Serving):
             clock = self.send(clock, pe, message.source, answer)
         if message.count(USER):
             clock = self.hear(clock, pe, message)
+        self.take_deposits(clock, message)
         if message.count(STEAL):
             clock = self.answer_thief(clock, pe, message)
         self.sample_rays(pe)
@@ -191,6 +193,7 @@ class Simulation(Serving):
         pe.go.tests_ps.append(intersection_ps(self.machine, self.workload, obj, ray))
         clock = self.pay("compute", pe, clock, pe.go.now - clock)
         self.positions[ray] += 1
+        self.leave(pe, ray, self.positions[ray] - 1)
         was_granted = ray in pe.granted
         if was_granted and self.itineraries[ray][self.positions[ray] :][:1] == [obj]:
             pe.use(obj)
@@ -266,6 +269,12 @@ def simulate(
         machine.processors, machine.header_bytes, tuple(rule for rule in has if has[rule])
     )
     outcome.memory = simulation.memory_columns()
+    time_ps, n_messages, n_bytes = simulation.reduction()
+    outcome.reduction_ps = time_ps
+    outcome.tally_messages += n_messages
+    outcome.bytes_sent += n_bytes
+    outcome.makespan_ps += time_ps
+    outcome.communication_ps = [ps + time_ps for ps in outcome.communication_ps]
     outcome.bytes_sent += simulation.round_messages * machine.header_bytes
     outcome.round_messages = simulation.round_messages
     outcome.round_ends = simulation.round_ends()

@@ -107,10 +107,15 @@ class Bounded(World):
         escapes = self.bounds.has_escape
         can_ask = any(lacking) and (self.rules.ask is not None or escapes)
         request = self.machine.header_bytes + self.machine.request_bytes
-        own = sum(self.object_bytes[o] for o in self.before[pe.number])
+        own = sum(self.object_bytes[o] for o in self.before[pe.number]) + self.copies()
         sizes = [self.object_bytes[o] for o in lacking[pe.number]]
         escape = max(sizes, default=0) if can_ask and escapes else 0
         return Parts(0, own, (self.island - 1) * request if can_ask else 0, escape)
+
+    def copies(self) -> int:
+        """Bytes of the tallies that every PE keeps for all objects."""
+        kept = self.placement.tallies == "reduce" and self.nb > 1
+        return int(self.workload.object_results.sum()) if kept else 0
 
     def least_receive(self) -> int:
         """A ray, with a header, of each other PE, if any is sent."""
@@ -209,7 +214,7 @@ class Bounded(World):
         """Look what a PE holds: does it fit, is it more than ever before?"""
         if self.bounds is None:
             return
-        resident = sum(self.object_bytes[o] for o in pe.resident)
+        resident = sum(self.object_bytes[o] for o in pe.resident) + self.copies()
         fetched, rays, unread = self.fetched(pe), self.ray_memory(pe), self.unread(pe)
         self.peak_control = max(self.peak_control, self.control(pe))
         peak, total = self.peaks[pe.number], resident + fetched + rays + unread

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from collections import defaultdict
 from dataclasses import dataclass, field
 
 from oracles.memory import Bounded
@@ -30,6 +31,9 @@ class Rounds(Bounded):
     round_messages: int = 0
     over_ps: list[int] = field(default_factory=list)
     """When the rounds that are over were known to be, as far as rays go."""
+
+    received_ps: defaultdict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
+    """Round: when batches of its deposits were received."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -78,11 +82,9 @@ class Rounds(Bounded):
     def end_rounds(self) -> None:
         """Some rays are finished: which rounds are over, and what begins when?"""
         while (k := len(self.over_ps)) < self.n_rounds:
-            rays = [ray for ray, its in enumerate(self.round_of) if its == k]
-            if not all(ray in self.done for ray in rays):
+            if not self.is_over(k):
                 return
-            ends = [self.ledger.ray_ends[ray] for ray in rays]
-            self.over_ps.append(max([*self.over_ps, *ends]))
+            self.over_ps.append(max([*self.over_ps, *self.ends_of(k)]))
             if (then := k + self.placement.window) < self.n_rounds:
                 begin = self.over_ps[k] + barrier_ps(self.machine)
                 self.begins[then] = begin
@@ -92,12 +94,21 @@ class Rounds(Bounded):
 
     def round_ends(self) -> list[int]:
         """When the last ray of each was finished."""
-        ends = []
-        for k in range(self.n_rounds):
-            rays = [ray for ray, its in enumerate(self.round_of) if its == k]
-            finished = [self.ledger.ray_ends[ray] for ray in rays if ray in self.done]
-            ends.append(max(finished, default=0) if len(finished) == len(rays) else -1)
-        return ends
+        return [
+            max(self.ends_of(k), default=0) if self.is_over(k) else -1 for k in range(self.n_rounds)
+        ]
+
+    def is_over(self, k: int) -> bool:
+        """Whether all rays of a round are finished."""
+        return all(ray in self.done for ray in self.rays_of_round(k))
+
+    def rays_of_round(self, k: int) -> list[int]:
+        """All of them."""
+        return [ray for ray, its in enumerate(self.round_of) if its == k]
+
+    def ends_of(self, k: int) -> list[int]:
+        """When its rays were finished, and its deposits received."""
+        return [self.ledger.ray_ends[ray] for ray in self.rays_of_round(k)] + self.received_ps[k]
 
     def round_begins(self, time: int, _: None) -> None:
         """Wake all who sleep."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter, defaultdict, deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -24,6 +24,8 @@ class Part(NamedTuple):
     words: tuple[int, ...] = ()
     pixels: tuple[int, ...] | None = None
     """An answer to a thief."""
+    of_round: int = 0
+    """That a batch of deposits counts for."""
     escape: bool = False
     """A request for, or an object of, the room of an escape."""
 
@@ -148,6 +150,8 @@ class PE:
     """Primary rays of rounds that have not begun."""
     round: int = 0
     """The first of those."""
+    deposits: defaultdict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
+    """PE: rays that have left something in its objects' results, which is not sent yet."""
     owes: int = 0
     """Time for reductions that rounds have begun with."""
     cut: bool = False

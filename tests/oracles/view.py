@@ -12,8 +12,8 @@ import numpy as np
 from oracles.costs import intersection_ps, packing, unpacking
 from oracles.network import distance, network_ps, receiving, sending
 from oracles.pace import rounded, speed_of
-from oracles.rounds import Rounds
 from oracles.state import PE
+from oracles.tallies import Tallying
 from simmpp.common.randomness import key
 from simmpp.machine.messages import OBJECT, RAYS, REQUEST
 from simmpp.policy.parameters import PolicyParameters
@@ -35,7 +35,7 @@ def random_draw(seed: int, pe: PE) -> int:
     return int(bits.random_raw()) >> 1
 
 
-class Views(Rounds):
+class Views(Tallying):
     """The oracle's views."""
 
     def view(self, pe: PE, other: int, nothing_else: bool, draws: bool) -> SimpleNamespace:

@@ -14,6 +14,7 @@ from simmpp.common.files import write_csv
 from simmpp.common.yamlfile import written
 from simmpp.config.advice import AdviseSettings
 from simmpp.config.config import Config
+from simmpp.report.advice.figures import advice_figures
 from simmpp.report.advice.page import write_advice_page
 from simmpp.studies.advise.advice import Advice
 from simmpp.studies.advise.candidates import setups_of, sizes_of
@@ -62,10 +63,16 @@ def print_advice(advice: Advice) -> None:
         say("".join(f"    {line}\n" for line in advice.settings.splitlines()))
 
 
-def write_advice(advice: Advice, out: Path) -> None:
-    """The table and the page."""
+def write_advice(advice: Advice, out: Path, *, figures: bool) -> None:
+    """The table and the page, and if wanted the pictures."""
     write_csv(advice.rows, COLUMNS, out / FILE)
     wrote(out / FILE, write_advice_page(advice, advice.places, out))
+    if figures:
+        from simmpp.plot.matplotlib_panels import draw  # half a second, which few want
+
+        for _, figure in advice_figures(advice, advice.places):
+            for panels in figure.plates.values():
+                wrote(*draw(panels, out / figure.stem))
 
 
 def list_candidates(config: Config) -> None:

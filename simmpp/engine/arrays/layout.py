@@ -72,6 +72,8 @@ class Sizes:
     """In flight or in an inbox, to begin with."""
     talks: bool
     """The policy may send messages of its own."""
+    deposits: bool
+    """Tests leave deposits that their owners are sent."""
     steals: bool
     """PEs ask others for pixels."""
     tested: int
@@ -121,6 +123,12 @@ ARRAYS = {
     "pixels": Array(I4),  # (n0,) primary rays, those of each PE in a row, by round
     "ray_rounds": Array(I4),  # (n,); this and the next are empty where all rays are of one round
     "rounds": Array(ROUND),
+    "leaves": Array(I1),  # (tests,) 1: a deposit; this and the next are empty if none is sent
+    "deposits": Array(I4, lambda n: n.peers if n.deposits else 0),  # beside ``peers``: not sent yet
+    "deposit_rounds": Array(I4, lambda n: n.peers if n.deposits else 0),  # that they count for
+    # Peers with deposits: list 2 k of PE k, or 2 k + 1 from deposits_from on.
+    "deposit_ends": Array(I4, lambda n: 4 * n.nb if n.deposits else 0),
+    "deposit_links": Array(I4, lambda n: 2 * n.peers if n.deposits else 0),
     # of a capacity; empty without one
     "rooms": Array(ROOM),  # (nb,)
     "most_alive": Array(I4),  # (n,) rays of its tree that can be alive at once
@@ -255,6 +263,7 @@ PARAMETERS = (
     "window",  # rounds that may be there together
     "barrier_ps",  # from the end of a round until all know
     "choosing_ps",  # of the reduction that a round begins with
+    "deposits_from",  # deposits for one owner that are sent together
     "packing",  # what goes to one PE at one dispatch in one message
     "record_tests",
     "record_hops",
@@ -274,11 +283,13 @@ COUNTERS = (
     "n_logged",
     "bin_width",  # k: the bins of the counters are 2^k ps wide
     "n_events",  # in the heap of the compiled event loop
+    "taken",  # 1: the first of them is being handled
     "arrivals",  # that it has seen
     "progress_at",  # ``activities`` at the last test or finished ray
     "sampled_ps",  # when all loads were last sampled
     "next_sample_ps",
     "user_dropped",  # messages of the policy's own that were one too many, or to nobody
+    "deposited",  # deposits sent
     "n_over",  # rounds that are over
     "over_ps",  # when they were
     "next_round",  # that is to be announced,

@@ -47,6 +47,7 @@ from simmpp.engine.pe.misses import is_holder, set_unasked, unfile
 from simmpp.engine.pe.peers import known_load
 from simmpp.engine.pe.sending import send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
+from simmpp.engine.pe.tallies import send_deposits
 from simmpp.engine.pe.telling import collect_peers, refresh_loads, return_credits
 from simmpp.engine.record.counters import note_work
 from simmpp.policy.record import consult
@@ -70,6 +71,8 @@ def dispatch(s: Run, me: int, inbox_empty: bool, now_ps: int) -> int:
         clock_ps = escape(s, me, inbox_empty, clock_ps)
     if s.packing != SINGLY:
         clock_ps = send_made_up(s, me, clock_ps)
+    if s.leaves_n > 0:
+        clock_ps = send_deposits(s, me, view.nothing_else, clock_ps)
     if s.refresh_ps != NONE and pe.received_load == 0:
         clock_ps = refresh_loads(s, me, clock_ps)
     if s.bounded:

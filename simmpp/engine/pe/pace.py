@@ -55,12 +55,15 @@ def pace_of(s: Run, me: int, now_ps: int) -> Pace:
 
 @kernel
 def paced_ps(cost_ps: int, pace: Pace) -> int:
-    """How long what costs that takes."""
-    if pace.times != pace.per:
-        cost_ps = scaled(cost_ps, pace.times, pace.per)
-    if pace.noise != ONE:
-        cost_ps = scaled(cost_ps, pace.noise, ONE)
-    return cost_ps
+    """How long what costs that takes; looked at for every test, so most machines go no further."""
+    if pace.times == pace.per and pace.noise == ONE:
+        return cost_ps
+    return _unevenly_ps(cost_ps, pace)
+
+
+@kernel
+def _unevenly_ps(cost_ps: int, pace: Pace) -> int:
+    return scaled(scaled(cost_ps, pace.times, pace.per), pace.noise, ONE)
 
 
 @kernel

@@ -23,6 +23,7 @@ from simmpp.engine.arrays.records import (
 from simmpp.engine.arrays.views import (
     itinerary_objects,
     itinerary_offsets,
+    leaves,
     misses,
     pes,
     rays,
@@ -42,6 +43,7 @@ from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_rea
 from simmpp.engine.pe.receiving import receive
 from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
 from simmpp.engine.pe.talking import get_on, rest, wake
+from simmpp.engine.pe.tallies import leave
 from simmpp.engine.record.counters import note_finished, note_held, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS
@@ -131,7 +133,10 @@ def note_peaks(s: Run, pe: Row) -> None:
 
 @kernel
 def compute(s: Run, me: int, now_ps: int) -> int:
-    """Make up to a quantum of tests on ready rays; returns the end of that work."""
+    """Make up to a quantum of tests on ready rays; returns the end of that work.
+
+    What a test finds is in the workload.
+    """
     pe = pes(s)[me]
     begin_ps = now_ps + s.probe_ps + s.compute_startup_ps
     pace, cost_ps = pace_of(s, me, now_ps), 0
@@ -139,11 +144,12 @@ def compute(s: Run, me: int, now_ps: int) -> int:
     tests, done, last = 0, s.rays_done, NONE
     while tests < s.quantum and has_ready(s, me):
         ray = next_ready(s, me)
-        first, end = itinerary_offsets(s)[ray], itinerary_offsets(s)[ray + 1]
-        while first + rays(s)[ray].tested < end:
-            obj = itinerary_objects(s)[first + rays(s)[ray].tested]
+        r = rays(s)[ray]
+        at, end = itinerary_offsets(s)[ray] + r.tested, itinerary_offsets(s)[ray + 1]
+        while at < end:
+            obj = itinerary_objects(s)[at]
             # What a ray was granted may have left the transient memory again: it is pinned for it.
-            if rays(s)[ray].granted == 0 and not is_in_memory(s, me, obj):
+            if r.granted == 0 and not is_in_memory(s, me, obj):
                 pop_ready(s, me)
                 file_ray(s, me, ray, obj)
                 break
@@ -153,13 +159,20 @@ def compute(s: Run, me: int, now_ps: int) -> int:
                 pe.cut = 1
                 break
             cost_ps += cost_of_test_ps(s, ray, obj)
-            _test(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
-            tests += 1
+            if s.record_tests:
+                _note_test(s, ray, obj)
+            if s.leaves_n > 0 and leaves(s)[at] == 1:
+                leave(s, me, ray, obj)
+            tests, at = tests + 1, at + 1
+            s.tests += 1
+            r.tested += 1
+            if r.granted or s.keeps:
+                _use(s, me, ray, obj, begin_ps + paced_ps(cost_ps, pace))
         else:
             cost_ps += s.ray_ps
             pop_ready(s, me)
             finish_ray(s, me, ray, begin_ps + paced_ps(cost_ps, pace))
-            rays(s)[ray].next, last = last, ray
+            r.next, last = last, ray
     took_ps = took(s, me, cost_ps, tests, s.rays_done - done, pace)
     return _end_go(s, me, now_ps, took_ps, tests, s.rays_done - done, last)
 
@@ -192,25 +205,25 @@ def _end_go(s: Run, me: int, now_ps: int, took_ps: int, tests: int, done: int, l
 
 
 @kernel
-def _test(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
-    """One ray-object intersection, which is over now; what it finds is in the workload."""
-    if s.record_tests:
-        tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
-    s.tests += 1
+def _note_test(s: Run, ray: int, obj: int) -> None:
+    tested_rays(s)[s.tests], tested_objects(s)[s.tests] = ray, obj
+
+
+@kernel
+def _use(s: Run, me: int, ray: int, obj: int, now_ps: int) -> None:
+    """A test is over against an object that may have been fetched: it is used, or let go."""
     r = rays(s)[ray]
-    r.tested += 1
-    if r.granted or s.keeps:
-        goes_on = r.granted != 0 and _needs_again(s, ray, obj)
-        miss_row = find(misses(s), me * s.n_objects + obj)
-        if miss_row != NONE:  # a resident object has none
-            touch(s, me, miss_row)
-            if r.granted == 1 and not goes_on:
-                unpin(s, me, miss_row, obj, now_ps)
-        if goes_on:  # what was granted for this test is for the next one as well
-            return
-        if r.granted == ESCAPED:
-            rooms(s)[me].stuck = NONE
-        r.granted = 0
+    goes_on = r.granted != 0 and _needs_again(s, ray, obj)
+    miss_row = find(misses(s), me * s.n_objects + obj)
+    if miss_row != NONE:  # a resident object has none
+        touch(s, me, miss_row)
+        if r.granted == 1 and not goes_on:
+            unpin(s, me, miss_row, obj, now_ps)
+    if goes_on:  # what was granted for this test is for the next one as well
+        return
+    if r.granted == ESCAPED:
+        rooms(s)[me].stuck = NONE
+    r.granted = 0
 
 
 @kernel

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
-from simmpp.common.units import format_bytes, format_ps
+from simmpp.common.units import format_bytes
 from simmpp.plot.curves import (
     Curve,
     Drawable,
-    Hatched,
     Layer,
     Panel,
     Scale,
@@ -20,16 +20,22 @@ from simmpp.plot.curves import (
 from simmpp.report.page.figures.figure import Figure
 from simmpp.run import words
 from simmpp.studies.advise.advice import Advice
-from simmpp.studies.advise.answer import named
 from simmpp.studies.advise.memory_map import Place
 from simmpp.studies.advise.sensitivity import Swing
+from simmpp.studies.advise.told import named, rounded_time
 
 PS_PER_MS = 1e9
 CONSTANTS = 6
 """Of the constants, those that move the advice most."""
 NOTHING = "nothing fits"
-MARGIN = 1.12
-"""Half of a hatched strip's width, as a factor."""
+ABOVE = 1.4
+"""How far above the curves is told what does not fit, as a factor."""
+BESIDE = 1.1
+"""Room on both sides of a tornado, as a factor."""
+RATIOS = (0.05, 0.1, 0.2, 0.5, 0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 2.0, 5.0, 10.0, 20.0)
+"""Ticks of its axis."""
+HAIR = 1e-6
+"""Of a vertical line, as curves are over their abscissas."""
 
 
 def advice_figures(advice: Advice, places: list[Place]) -> Iterator[tuple[str, Figure]]:
@@ -62,7 +68,6 @@ def _times(advice: Advice) -> Figure | None:
             words.policy(policy),
             {float(nodes): _spread(advice, number) for nodes, number in sorted(at.items())},
             style=styles[policy],
-            notes={float(nodes): advice.fitting[n].setup.name for nodes, n in at.items()},
         )
         for policy, at in sorted(best.items())
     ]
@@ -71,12 +76,12 @@ def _times(advice: Advice) -> Figure | None:
     curves.append(Curve("computing alone", dict(sorted(least.items())), is_guide=True))
     heights = [spread.mean for curve in curves for spread in curve.points.values()]
     sizes = tuple(float(n) for n in sorted({each.processors for each in advice.candidates}))
-    strips = list(_strips(advice, min(heights), max(heights), styles))
+    curves += _unfit(advice, max(heights), styles)
     x = Scale("nodes (PEs)", is_log=True, ticks=sizes)
-    panel = Panel("", x, Scale("makespan (ms)", is_log=True), curves, hatched=strips)
+    panel = Panel("", x, Scale("makespan (ms)", is_log=True), curves)
     note = (
         "of each policy the best candidate that was simulated; bands: 95 % interval over seeds;"
-        " hatched: nothing of that policy fits"
+        " on top: where nothing of a policy fits; elsewhere, where a point is missing, none can win"
     )
     return Figure("advice-times", "Time over nodes", note, {"": [panel]})
 
@@ -87,24 +92,26 @@ def _spread(advice: Advice, number: int) -> Spread:
     return Spread(*(value / PS_PER_MS for value in (found.mean, *ends)))
 
 
-def _strips(advice: Advice, low: float, high: float, styles: dict[str, int]) -> Iterator[Hatched]:
-    fits: dict[tuple[str, int], bool] = {}
+def _unfit(advice: Advice, height: float, styles: dict[str, int]) -> Iterator[Curve]:
+    """Above all curves, a row for each policy of which nothing fits somewhere."""
+    fits: dict[str, dict[int, bool]] = {}
     for each in advice.candidates:
-        key = each.policy.name, each.processors
-        fits[key] = fits.get(key, False) or each.fits
-    for (policy, nodes), does in fits.items():
-        if not does:
-            label = words.policy(policy)
-            yield Hatched(nodes / MARGIN, nodes * MARGIN, low, high, label, styles[policy])
+        sizes = fits.setdefault(each.policy.name, {})
+        sizes[each.processors] = sizes.get(each.processors, False) or each.fits
+    for policy, sizes in fits.items():
+        unfit = sorted(nodes for nodes, does in sizes.items() if not does)
+        if unfit:
+            height *= ABOVE
+            points = {float(nodes): Spread(height, height, height) for nodes in unfit}
+            yield Curve(f"{words.policy(policy)}: does not fit", points, style=styles[policy])
 
 
 def _said_of_times(advice: Advice) -> str:
-    chosen = advice.chosen
-    if chosen is None:
-        return "Nothing came to an end."
     number = advice.verdict.chosen
-    assert number is not None
-    return f"{words.capital(named(chosen))} takes {_time(advice.makespan_ps(number).mean)}."
+    if number is None:
+        return "Nothing came to an end."
+    takes = rounded_time(advice.makespan_ps(number).mean)
+    return f"{words.capital(named(advice.fitting[number]))} takes {takes}."
 
 
 # --- who wins with which memory ---
@@ -121,7 +128,7 @@ def _map(places: list[Place]) -> Figure:
         if place.best is not None:
             label = words.policy(place.best.policy.name)
             policies[label] = place.best.policy.name
-            text = f"{named(place.best)}: {_time(place.makespan_ps)}"
+            text = f"{named(place.best)}: {rounded_time(place.makespan_ps)}"
         where = f"{format_bytes(place.capacity_bytes)} a node, {place.processors} nodes"
         layers.setdefault(label, []).append(Tile(*at, -1, f"{where}: {text}"))
     styles = {label: _style(name) for label, name in policies.items()}
@@ -154,20 +161,29 @@ def _said_of_map(advice: Advice, places: list[Place]) -> str:
 
 
 def _swings(advice: Advice) -> Figure:
-    shown = advice.sensitivity.swings[:CONSTANTS]
-    names = tuple(swing.constant.name for swing in shown)
-    curves = [
-        Curve(
-            f"at its {word}",
-            {float(n): Spread(*(_ratio(s.advantages[end]),) * 3) for n, s in enumerate(shown)},
-            notes={float(n): _end(swing, end) for n, swing in enumerate(shown)},
-        )
-        for end, word in enumerate(("least", "greatest"))
-    ]
-    y = Scale("best rival's cost / the advised one's", is_log=True)
-    panel = Panel("", _names("constant of the machine", names), y, curves, level=1.0)
-    note = "below 1 a rival is better; one seed, one constant at a time, at both ends of its range"
+    """A tornado: a bar for each constant, the one that moves most on top."""
+    shown = advice.sensitivity.swings[:CONSTANTS][::-1]
+    curves = [_bar(float(n), swing) for n, swing in enumerate(shown)]
+    beside = {1 - HAIR: Spread(*(-0.5,) * 3), 1 + HAIR: Spread(*(len(shown) - 0.5,) * 3)}
+    curves.append(Curve("a rival is as good", beside, is_guide=True))
+    ratios = [ratio for curve in curves for ratio in curve.points]
+    ends = min(ratios) / BESIDE, max(ratios) * BESIDE
+    ticks = tuple(tick for tick in RATIOS if ends[0] <= tick <= ends[1])
+    x = Scale("best rival's cost / the advised one's", is_log=True, ticks=ticks, limits=ends)
+    y = _names("constant of the machine", [swing.constant.name for swing in shown])
+    y = replace(y, limits=(-0.7, len(shown) - 0.3))
+    note = "left of 1 a rival is better; one seed, one constant at a time, from end to end"
+    panel = Panel("", x, y, curves)
     return Figure("advice-constants", "What the advice hangs on", note, {"": [panel]})
+
+
+def _bar(height: float, swing: Swing) -> Curve:
+    """From the constant's least value to its greatest."""
+    ends = {_ratio(swing.advantages[end]): _end(swing, end) for end in (0, 1)}
+    if len(ends) == 1:  # it moves nothing
+        ends = dict.fromkeys(ends, f"{_end(swing, 0)} to {_end(swing, 1)}")
+    points = {ratio: Spread(height, height, height) for ratio in sorted(ends)}
+    return Curve("from its least to its greatest value", points, notes=ends)
 
 
 def _ratio(advantage: float) -> float:
@@ -196,7 +212,3 @@ def _style(policy: str) -> int:
     """A policy's colour, as on all pages; of one's own the next."""
     known = list(words.PAPER_WORDS)
     return known.index(policy) if policy in known else len(known)
-
-
-def _time(time_ps: float) -> str:
-    return format_ps(int(float(f"{time_ps:.3g}")))

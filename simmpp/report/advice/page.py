@@ -10,8 +10,10 @@ from simmpp.report.advice.figures import advice_figures
 from simmpp.report.page.figures.figure import figure_data
 from simmpp.report.page.template import rendered
 from simmpp.studies.advise.advice import Advice
-from simmpp.studies.advise.answer import capacity
+from simmpp.studies.advise.candidates import capacity_of
 from simmpp.studies.advise.memory_map import Place
+from simmpp.studies.advise.table import CANNOT_WIN
+from simmpp.studies.advise.told import rounded_time
 
 PAGE = "advise.html"
 
@@ -24,7 +26,7 @@ def write_advice_page(advice: Advice, places: list[Place], folder: Path) -> Path
         "title": f"Advice for {advice.scene}",
         "facts": [
             f"machine {config.preset}",
-            f"{format_bytes(capacity(advice))} a node",
+            f"{format_bytes(capacity_of(config))} a node",
             f"goal {_goal(advice)}",
         ],
         "live": "",
@@ -50,6 +52,12 @@ def _goal(advice: Advice) -> str:
     return goal if isinstance(goal, str) else f"least nodes within {format_ps(goal)}"
 
 
+def _fate(row: Row) -> str:
+    """With the reason, where none would be seen."""
+    at_least = f": takes at least {rounded_time(row['bound_ps'])}" if row["bound_ps"] != "" else ""
+    return f"{row['fate']}{at_least if row['fate'] == CANNOT_WIN else ''}"
+
+
 def _line(row: Row) -> dict[str, str]:
     """A candidate for people."""
     time = row["makespan_ps"]
@@ -57,9 +65,9 @@ def _line(row: Row) -> dict[str, str]:
     return {
         "candidate": f"{row['candidate']}{' (advised)' if row['advised'] else ''}",
         "nodes": str(row["processors"]),
-        "makespan": format_ps(int(float(f"{time:.3g}"))) if time != "" else "",
+        "makespan": rounded_time(time) if time != "" else "",
         "seeds": str(row["seeds"]),
-        "what became of it": str(row["fate"]),
+        "what became of it": _fate(row),
         "as good as the best": f"{good:.0%}" if good != "" else "",
         "least memory": format_bytes(row["least_bytes"]),
         "lacks": format_bytes(row["lacking_bytes"]) if row["lacking_bytes"] else "",

@@ -189,7 +189,7 @@ def _fullest(figure: Figure, motion: Motion) -> None:
     }
     for label, (amount, color, hatch) in parts.items():
         top = bottom + amount / 1e3
-        style = {"color": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
+        style: Any = {"color": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
         axes.stairs(top, edges, baseline=bottom, fill=True, label=label, **style)
         bottom = top
     capacity, most = fullest.capacity_bytes / 1e3, max(bottom.max(), 1e-9)

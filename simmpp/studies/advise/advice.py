@@ -46,10 +46,14 @@ class Advice:
     """Simulations of the race."""
     further_runs: int = 0
     """Simulations with other constants."""
+    left_out: str = ""
+    """Of which part of the picture it is, if all of it was too large."""
     broken_off: str = ""
     """What ended it before it was done, if anything did."""
     interrupt: KeyboardInterrupt | None = None
     """Ctrl-C, if it was that."""
+    beyond_bytes: int = 0
+    """By how much more than a node has the one advised would hold without credits."""
     least_nodes: Candidate | None = None
     """Where nothing fits, what would with more nodes."""
     places: list[Place] = field(default_factory=list)

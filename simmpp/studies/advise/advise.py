@@ -22,6 +22,7 @@ from simmpp.studies.advise.candidates import Candidate, candidates_of, capacity_
 from simmpp.studies.advise.constants import constants_of
 from simmpp.studies.advise.least import least_nodes
 from simmpp.studies.advise.memory_map import memory_map
+from simmpp.studies.advise.part import held_workload
 from simmpp.studies.advise.racing import Ask, Contender, Race
 from simmpp.studies.advise.running import OutOfTime, Run, Watcher
 from simmpp.studies.advise.sensitivity import (
@@ -100,7 +101,7 @@ def asked_of(config: Config, watcher: Watcher) -> Advice:
     """The question, with its candidates, before anything is simulated."""
     refuse_models(config)
     capacity_of(config)
-    workload = workload_of(config, progress=watcher.tracing, notice=watcher.notice)
+    config, workload, left_out = held_workload(config, watcher)
     cache_workload(config, workload.digest)
     keep_workload(workload)
     candidates = candidates_of(config, workload)
@@ -108,6 +109,7 @@ def asked_of(config: Config, watcher: Watcher) -> Advice:
     bounds = [bound_of(candidate, workload) for candidate in fitting]
     contest = contest_of(config, fitting, bounds, Run.never())
     advice = Advice(config, workload.name, candidates, bounds, contest, contest.verdict())
+    advice.left_out = left_out
     if not fitting:
         advice.least_nodes = least_nodes(config, workload, max(sizes_of(config)))
     return advice
@@ -121,6 +123,8 @@ def _find(advice: Advice, run: Run, *, maps: bool) -> None:
         contest.run()
         advice.runs = run.count
         advice.verdict = contest.verdict()
+        if advice.chosen is not None and advice.chosen.has_credits:
+            advice.beyond_bytes = run.exceeds_bytes(advice.chosen.task_without_credits())
         study = study_of(advice, run)
         if study is not None:
             constants = constants_of(advice.config)
@@ -141,13 +145,22 @@ def _find(advice: Advice, run: Run, *, maps: bool) -> None:
 
 def _map(advice: Advice, run: Run) -> None:
     """What would win with other memory."""
-    race, ranking = advice.contest.race, dict[int, list[str]]()
-    for n in sorted(race.costs, key=lambda n: (race.mean(n), advice.fitting[n].order)):
-        candidate = advice.fitting[n]
-        ranking.setdefault(candidate.processors, []).append(candidate.setup.name)
     workload = workload_of(advice.config)
-    for place in memory_map(advice.config, workload, ranking, run):
+    for place in memory_map(advice.config, workload, _promising(advice), run):
         advice.places.append(place)
+
+
+def _promising(advice: Advice) -> dict[int, list[str]]:
+    """For each number of nodes the names of setups: what has not fit, what was best, the others."""
+    race, fitting = advice.contest.race, advice.fitting
+    ended = [(n, fitting[n]) for n in sorted(race.costs, key=lambda n: (race.mean(n), n))]
+    found = {}
+    for size in sorted({each.processors for each in advice.candidates}):
+        unfit = [e.setup.name for e in advice.candidates if e.processors == size and not e.fits]
+        here = [each.setup.name for _, each in ended if each.processors == size]
+        elsewhere = [each.setup.name for _, each in ended if each.processors != size]
+        found[size] = list(dict.fromkeys([*unfit, *here, *elsewhere]))
+    return found
 
 
 def study_of(advice: Advice, run: Run) -> Study | None:

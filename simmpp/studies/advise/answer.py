@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import groupby
+from collections.abc import Iterator
+from typing import Any
 
-from simmpp.common.units import counted, format_bytes, format_ps
+from simmpp.common.units import counted, format_ps
 from simmpp.common.yamlfile import written
 from simmpp.run import words
 from simmpp.studies.advise.advice import NODE_SECONDS, Advice
-from simmpp.studies.advise.candidates import Candidate
+from simmpp.studies.advise.answer_memory import credits_told, nothing_told, unfit_told
 from simmpp.studies.advise.confidence import LEAST_SEEDS
 from simmpp.studies.advise.sensitivity import Swing
-from simmpp.sweeps.intervals import MeanInterval
+from simmpp.studies.advise.told import (
+    compared,
+    listed,
+    named,
+    node_seconds,
+    rounded_time,
+    share_told,
+    time_told,
+    times_the_nodes,
+)
 
 TURNS_TOLD = 3
 """Constants that are told to change the advice, at most; the page shows more."""
-MOST_TOLD = 4
-"""Names in a list, before the rest is counted."""
 
 
 def sentences_of(advice: Advice) -> list[str]:
     """All of it."""
-    if advice.chosen is None:
-        return [*_nothing(advice), *_unfit(advice)]
-    return [*_use(advice), *_sure(advice), *_next(advice), *_unfit(advice), *_hangs_on(advice)]
+    of_a_part = [advice.left_out] if advice.left_out else []
+    number = advice.verdict.chosen
+    if number is None:
+        return [*nothing_told(advice), *of_a_part, *unfit_told(advice)]
+    told = [*_use(advice, number), *of_a_part, *_sure(advice)]
+    told += [*_next(advice, number), *credits_told(advice), *unfit_told(advice)]
+    return [*told, *_hangs_on(advice)]
 
 
 def settings_of(advice: Advice) -> str:
@@ -32,39 +43,25 @@ def settings_of(advice: Advice) -> str:
     chosen = advice.chosen
     if chosen is None:
         return ""
-    nested: dict[str, object] = {}
+    nested: dict[str, Any] = {}
     for key, value in chosen.keys.items():
         *above, last = key.split(".")
         node = nested
         for part in above:
-            inner = node.setdefault(part, {})
-            assert isinstance(inner, dict)
-            node = inner
+            node = node.setdefault(part, {})
         node[last] = value
     return "".join(f"{key}: {written(value)}\n" for key, value in nested.items())
-
-
-def named(candidate: Candidate, short: bool = False) -> str:
-    """``"concurrent dataflow (rows-used) on 16 PEs"``."""
-    flow = words.policy(candidate.policy.name)
-    name = candidate.setup.name
-    flow = "the " * flow.endswith("scene") + flow
-    called = flow if name == candidate.policy.name else f"{flow} ({name})"
-    where = words.said("processors", candidate.processors)
-    return f"{name} on {candidate.processors}" if short else f"{called} on {where}"
 
 
 # --- the parts ---
 
 
-def _use(advice: Advice) -> Iterator[str]:
-    chosen, number = advice.chosen, advice.verdict.chosen
-    assert chosen is not None and number is not None
-    found = advice.makespan_ps(number)
-    bound = _digits(advice.bounds[number])
-    text = f"Use {named(chosen)}: {_time(found)}, of which computing alone takes {bound}"
+def _use(advice: Advice, number: int) -> Iterator[str]:
+    chosen, found = advice.fitting[number], advice.makespan_ps(number)
+    bound = rounded_time(advice.bounds[number])
+    text = f"Use {named(chosen)}: {time_told(found)}, of which computing alone takes {bound}"
     if advice.asked.goal == NODE_SECONDS:
-        text += f"; {_node_seconds(found.mean * chosen.processors)}"
+        text += f"; {node_seconds(found.mean * chosen.processors)}"
     yield f"{text}."
     if isinstance(advice.asked.goal, int) and not advice.verdict.is_within:
         yield (
@@ -80,85 +77,53 @@ def _sure(advice: Advice) -> Iterator[str]:
     unrun = len(advice.fitting) - len(advice.contest.race.costs) - len(advice.contest.race.dropped)
     if advice.broken_off:
         untried = f", {unrun} were not tried" if unrun > 0 and not verdict.sure else ""
-        yield f"Broken off ({advice.broken_off}): of {of}{untried}, this was the best so far."
+        told = f"of {of}{untried}, this was the best so far"
+        if advice.contest.race.is_over:
+            told = "the race was over, what it hangs on is not all known"
+        yield f"Broken off ({advice.broken_off}): {told}."
     if verdict.sure is None:
         yield f"How sure that is can't be said from fewer than {LEAST_SEEDS} seeds."
         return
-    if isinstance(asked.goal, int):
-        claim = f"it takes at most {format_ps(asked.goal)}, and fewer nodes do not"
-        claim += f" (each within {float(asked.indifference):.0%})"
-    else:
-        measure = "cheaper" if asked.goal == NODE_SECONDS else "faster"
-        claim = f"no other of {of} is more than {float(asked.indifference):.0%} {measure}"
-    if advice.verdict.is_within or not isinstance(asked.goal, int):
-        sure = words.capital(_share(verdict.sure))
-        yield f"{sure} sure that {claim}, by the chance of placements."
+    claim = _claim(advice, of)
+    is_drawn = any(advice.fitting[number].is_drawn for number in verdict.likely)
+    if claim and is_drawn:
+        sure = words.capital(share_told(verdict.sure))
+        yield f"{sure} sure, with {LEAST_SEEDS} seeds, that {claim}."
+    elif claim:
+        yield f"{words.capital(claim)}; nothing about them is drawn, so seeds have no part in that."
     if given.kept is not None:
         yield (
             f"With the machine's constants drawn from their ranges it stays so on"
-            f" {round(given.kept * given.n_draws)} of {given.n_draws} machines:"
-            f" {_share(verdict.sure * given.kept)} sure of both."
+            f" {given.n_kept} of {given.n_draws} machines:"
+            f" {share_told(verdict.sure * given.kept)} sure{' of both' * is_drawn}."
         )
     if verdict.ties and not isinstance(asked.goal, int):
-        others = _listed(named(advice.fitting[n]) for n in verdict.ties)
+        others = listed(named(advice.fitting[n]) for n in verdict.ties)
         yield f"A tie within {float(asked.indifference):.0%} with {others}."
 
 
-def _next(advice: Advice) -> Iterator[str]:
-    """The best of the others that is not a tie, or is one with other nodes or another policy."""
-    chosen, others = advice.chosen, advice.others()
-    assert chosen is not None and advice.verdict.chosen is not None
+def _claim(advice: Advice, of: str) -> str:
+    """What is sure, or not; nothing where a limit is not kept."""
+    goal, most = advice.asked.goal, f"{float(advice.asked.indifference):.0%}"
+    if isinstance(goal, int):
+        text = f"it takes at most {format_ps(goal)}, and fewer nodes do not (each within {most})"
+        return text if advice.verdict.is_within else ""
+    measure = "cheaper" if goal == NODE_SECONDS else "faster"
+    return f"no other of {of} is more than {most} {measure}"
+
+
+def _next(advice: Advice, number: int) -> Iterator[str]:
+    """The best of the others, and its price."""
+    chosen, others = advice.fitting[number], advice.others()
     if not others:
         return
-    runner_up, own = advice.fitting[others[0]], advice.makespan_ps(advice.verdict.chosen)
+    runner_up, own = advice.fitting[others[0]], advice.makespan_ps(number)
     found = advice.makespan_ps(others[0])
-    text = f"Runner-up: {named(runner_up)}: {_time(found)}, {_compared(found.mean / own.mean)}"
+    first = "Runner-up" if found.mean >= own.mean else "As good, but not as simple"
+    text = f"{first}: {named(runner_up)}: {time_told(found)}, {compared(found.mean / own.mean)}"
     if runner_up.processors != chosen.processors:
-        ratio = runner_up.processors / chosen.processors
-        text += f", with {ratio:.3g} times the nodes"
+        text += f", with {times_the_nodes(runner_up.processors / chosen.processors)}"
     yield f"{text}."
-
-
-def _unfit(advice: Advice) -> Iterator[str]:
-    unfit = [candidate for candidate in advice.candidates if not candidate.fits]
-    if not unfit:
-        return
-    has = format_bytes(capacity(advice))
-    sizes = sorted({each.processors for each in advice.candidates})
-    nothing = [s for s in sizes if all(not c.fits for c in advice.candidates if c.processors == s)]
-    told = []
-    if nothing and advice.fitting:
-        least = min(c.least_bytes for c in unfit if c.processors == nothing[-1])
-        told.append(
-            f"anything on {_or(nothing)} PEs (at least {format_bytes(least)} on {nothing[-1]})"
-        )
-    rest = sorted(
-        (c for c in unfit if c.processors not in nothing), key=lambda c: (c.setup.name, c.order)
-    )
-    for name, group in groupby(rest, key=lambda c: c.setup.name):
-        of_name = list(group)
-        needs = dict.fromkeys(format_bytes(c.least_bytes) for c in of_name)
-        on = f" on {_or(c.processors for c in of_name)}"
-        told.append(f"{name}{on} (needs {' and '.join(needs)} a node)")
-    if told:
-        yield f"Doesn't fit into {has}: {'; '.join(told)}."
-
-
-def _nothing(advice: Advice) -> Iterator[str]:
-    has = format_bytes(capacity(advice))
-    if advice.fitting:
-        yield "Nothing came to an end: no candidate can be advised."
-        return
-    best = min(advice.candidates, key=lambda each: (each.least_bytes, each.order))
-    yield (
-        f"Nothing fits into {has} a node. The least memory that would do is"
-        f" {format_bytes(best.least_bytes)}, for {named(best)}."
-    )
-    more = advice.least_nodes
-    if more is None:
-        yield f"With {has} a node no number of nodes that was looked at would do."
-    else:
-        yield f"With {has} a node it takes {named(more)}: the least nodes that would do."
 
 
 def _hangs_on(advice: Advice) -> Iterator[str]:
@@ -187,52 +152,6 @@ def _turns(advice: Advice, swing: Swing) -> Iterator[str]:
             yield f"{swing.constant.name} ({then} {side} {_rounded(swing, at)})"
 
 
-# --- words ---
-
-
-def capacity(advice: Advice) -> int:
-    """Bytes of a node."""
-    size = advice.config.memory.capacity
-    assert isinstance(size, int)
-    return size
-
-
 def _rounded(swing: Swing, value: int) -> str:
     """With three digits."""
     return swing.constant.text(int(float(f"{value:.3g}")))
-
-
-def _time(found: MeanInterval) -> str:
-    text = _digits(found.mean)
-    if found.low == found.high:
-        return text
-    if found.low != found.low:
-        return f"{text} (one seed)"
-    return f"{text} (95 %: {_digits(found.low)} to {_digits(found.high)})"
-
-
-def _digits(time_ps: float) -> str:
-    return format_ps(int(float(f"{time_ps:.3g}")))
-
-
-def _node_seconds(time_ps: float) -> str:
-    return f"{time_ps / 1e12:.3g} node-seconds"
-
-
-def _compared(ratio: float) -> str:
-    return f"{ratio - 1:.1%} longer" if ratio >= 1 else f"{1 - ratio:.1%} shorter"
-
-
-def _share(share: float) -> str:
-    """Never more than it can be known."""
-    return "more than 99 %" if share > 0.99 else f"{share * 100:.0f} %"
-
-
-def _or(numbers: Iterable[int]) -> str:
-    return words.any_of(map(str, numbers))
-
-
-def _listed(names: Iterable[str]) -> str:
-    every = list(names)
-    more = len(every) - MOST_TOLD
-    return words.any_of([*every[:MOST_TOLD], f"{more} others"] if more > 0 else every, "and")

@@ -86,6 +86,19 @@ class Candidate:
             return None
 
     @property
+    def has_credits(self) -> bool:
+        """Rays are sent only where there is room for them."""
+        bounds = self.config.memory.bounds
+        return bounds is not None and bounds.has_credits
+
+    def task_without_credits(self) -> Task:
+        """Its simulation with queues without end, which are only compared with the capacity."""
+        path = ("memory", "flow")
+        return task_of(
+            _point(changed(self.config, [("memory.flow", "none", path)]), 0), self.digest
+        )
+
+    @property
     def kind(self) -> tuple[str, int]:
         """Candidates of one kind behave alike."""
         return self.policy.name, self.processors
@@ -163,14 +176,13 @@ def setups_of(config: Config, asked: AdviseSettings, n_sizes: int) -> list[Setup
     return setups
 
 
-def _own(entry: object, config: Config) -> Setup:
+def _own(entry: str | dict[str, Any], config: Config) -> Setup:
     """A setup by its name, or one's own."""
     path = ("advise", "candidates")
     if isinstance(entry, str):
         if entry not in BY_NAME:
             raise misplaced(path, unknown(entry, list(BY_NAME)), config.places)
         return BY_NAME[entry]
-    assert isinstance(entry, dict)
     keys = {key: value for key, value in entry.items() if key != "name"}
     if "processors" in keys or not keys:
         problem = f"value {shown(entry)}: expected keys such as policy, and no processors"

@@ -42,10 +42,3 @@ def _weights(n: int) -> Floats:
     draws = np.random.Generator(np.random.Philox(key(n, "advise")))
     exponential = draws.standard_exponential((DRAWS, n))
     return exponential / exponential.sum(axis=1, keepdims=True)
-
-
-def probabilities(costs: Sequence[Sequence[float]], indifference: float) -> list[float]:
-    """For each candidate, how likely no other is better by more than the indifference."""
-    means = weighted_means(costs)
-    good = means <= means.min(axis=0) * (1 + indifference)
-    return [float(share) for share in good.mean(axis=1)]

@@ -16,7 +16,7 @@ from simmpp.workload.workload import Workload
 LEVELS = tuple(Fraction(2) ** n for n in (-2, -1, 0, 1, 2))
 """Times the memory that there is."""
 TRIED = 5
-"""Setups that are simulated at each place, with one seed: those that were best on as many nodes."""
+"""Setups that are simulated at each place, with one seed."""
 
 
 class Place(NamedTuple):
@@ -34,7 +34,7 @@ def memory_map(
 ) -> Iterator[Place]:
     """The best of the most promising setups at each place.
 
-    ``ranking`` has the names of setups for each number of nodes, the best first.
+    ``ranking`` has the names of setups for each number of nodes, the most promising first.
     """
     capacity = capacity_of(config)
     for level in LEVELS:
@@ -49,8 +49,7 @@ def _place(
 ) -> Place:
     fitting = [each for each in candidates_on(config, workload, nodes) if each.fits]
     ranks = {name: n for n, name in enumerate(ranking)}
-    # what did not fit before comes first: nobody knows how fast it would be
-    fitting.sort(key=lambda each: (ranks.get(each.setup.name, -1), each.order))
+    fitting.sort(key=lambda each: (ranks.get(each.setup.name, len(ranks)), each.order))
     tried = fitting[:TRIED]
     makespans = run([each.task(0) for each in tried])
     makespan, best = min(zip(makespans, range(len(tried)), strict=True), default=(math.inf, -1))

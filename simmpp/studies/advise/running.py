@@ -40,6 +40,7 @@ class Run:
     def __init__(self, pool: Pool, deadline_s: float = math.inf, watcher: Watcher | None = None):
         self._pool, self._deadline_s, self._watcher = pool, deadline_s, watcher or Watcher()
         self._makespans: dict[str, float] = {}
+        self._exceeds: dict[str, int] = {}
 
     @classmethod
     def never(cls) -> Run:
@@ -59,6 +60,11 @@ class Run:
         found = {task.key: makespan for task, makespan in self.one_by_one(tasks)}
         return [found[task.key] for task in tasks]
 
+    def exceeds_bytes(self, task: Task) -> int:
+        """By how much more than its capacity a node holds, where nothing keeps it within."""
+        self([task])
+        return self._exceeds[task.key]
+
     def one_by_one(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, float]]:
         """Each task with its makespan as soon as it is known; raises the same."""
         by_key = {task.key: task for task in tasks}
@@ -71,6 +77,7 @@ class Run:
             found = outcome.numbers.get("makespan_ps")
             makespan = math.inf if found is None else float(max(LEAST_PS, found))
             self._makespans[outcome.key] = makespan
+            self._exceeds[outcome.key] = outcome.numbers.get("exceeds_bytes", 0)
             yield by_key[outcome.key], makespan
             self._watcher.simulated(self.count)
             if time.monotonic() > self._deadline_s:

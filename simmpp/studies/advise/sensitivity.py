@@ -15,8 +15,8 @@ from simmpp.studies.advise.constants import Constant, drawn, log_ratio
 RIVALS = 4
 """Others that are tried with each draw: the best with another policy or number of nodes. ESTIMATE:
 rivals of one policy move with it."""
-RIVALS_AT_ENDS = 2
-"""Of these, those that are tried at both ends of each range."""
+RIVALS_AT_ENDS = 1
+"""Of these, the best is tried at both ends of each range: each takes two runs a constant."""
 DRAWS = 16
 """Machines drawn from the ranges."""
 STREAM = "advise constants"
@@ -56,9 +56,15 @@ class Sensitivity:
     """Log of the best rival's cost / the advised one's, on the machine as it is."""
     swings: list[Swing] = field(default_factory=list)
     """The constant that moves most comes first."""
-    kept: float | None = None
-    """Share of the drawn machines on which no rival is better by more than the indifference."""
+    n_kept: int = 0
+    """Of the drawn machines, those on which no rival is better by more than the indifference."""
     n_draws: int = 0
+
+    @property
+    def kept(self) -> float | None:
+        """How likely that is on another machine: by the rule of succession (Laplace 1774), as few
+        machines are drawn. None if none is."""
+        return (self.n_kept + 1) / (self.n_draws + 2) if self.n_draws else None
 
 
 @dataclass(eq=False)
@@ -94,10 +100,8 @@ class Study:
 
     def result(self) -> Sensitivity:
         """As far as it is known."""
-        n = len(self._drawn)
-        kept = sum(self._drawn) / n if n else None
         swings = sorted(self._swings, key=lambda swing: (-swing.width, swing.constant.name))
-        return Sensitivity(self._advantage, swings, kept, n)
+        return Sensitivity(self._advantage, swings, sum(self._drawn), len(self._drawn))
 
     @property
     def _lost(self) -> float:

@@ -8,6 +8,7 @@ from simmpp.common.files import Row
 from simmpp.studies.advise.advice import Advice
 
 FILE = "advise.csv"
+CANNOT_WIN = "can't win"
 COLUMNS = (
     "candidate",
     "processors",
@@ -25,9 +26,9 @@ COLUMNS = (
     "as_good",
     "regret",
 )
-"""``fate``: in the end, left, not run (by its bound, or as fewer nodes do), untried (broken off),
-no end, does not fit. ``as_good``: how likely it is as good as the best; ``regret``: by what share
-it takes more than the best, in the mean."""
+"""``fate``: in the end, left behind, can't win (its bound says so), not needed (fewer nodes do),
+untried (broken off), no end, does not fit. ``as_good``: how likely it is as good as the best;
+``regret``: by what share it takes more than the best, in the mean."""
 
 
 def rows_of(advice: Advice) -> list[Row]:
@@ -73,5 +74,7 @@ def fate(advice: Advice, number: int) -> str:
     race = advice.contest.race
     if number in race.costs:
         ended = race.mean(number) < float("inf")
-        return ("in the end" if number in race.in_race else "left") if ended else "no end"
-    return "not run" if number in race.dropped or race.is_over else "untried"
+        return ("in the end" if number in race.in_race else "left behind") if ended else "no end"
+    if number in race.dropped:
+        return CANNOT_WIN
+    return "not needed" if race.is_over else "untried"

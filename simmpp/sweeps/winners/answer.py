@@ -116,7 +116,7 @@ def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
     scarce = [share for share in held if share < 1]
     ratios = [1 / (contest.ceiling or 1) for contest in found]
     faster = sum(ratio > 1 for ratio in ratios)
-    text = f"the picture takes {words.span(ratios)} times as long as with the fastest dataflow"
+    text = f"the job takes {words.span(ratios)} times as long as with the fastest dataflow"
     if len(found) > 1 and faster:
         text += f" (longer in {faster} of {len(found)} cases)"
     if not scarce:

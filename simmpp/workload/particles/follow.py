@@ -69,13 +69,17 @@ def batch(grid: Grid, rules: Rules, first: int, last: int) -> Followed:
 def empty_tally(grid: Grid) -> Tally:
     """Zeros of each cell, and of what is counted besides."""
     n = len(grid.material_of) + BEHIND
-    return Tally(*(np.zeros(n, np.int64) for _ in Tally._fields))
+    absorbed, tracks, visits, touched = (np.zeros(n, np.int64) for _ in range(4))
+    return Tally(absorbed, tracks, visits, np.zeros(n), np.zeros(n), touched)
 
 
 def added(tally: Tally, more: Tally) -> None:
     """Add the sums of other roots."""
-    for entries, of_others in zip(tally, more, strict=True):
-        entries += of_others
+    tally.absorbed[:] += more.absorbed
+    tally.tracks[:] += more.tracks
+    tally.visits[:] += more.visits
+    tally.absorbed_squares[:] += more.absorbed_squares
+    tally.track_squares[:] += more.track_squares
 
 
 def _tables(segments: int, rays: int) -> Tables:

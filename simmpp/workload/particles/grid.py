@@ -26,7 +26,7 @@ class Grid(NamedTuple):
     widths: tuple[float, float, float]
     """Of a cell, along each axis."""
     unit: float
-    """The least of them: tracks are counted in it."""
+    """The greatest of them: tracks are counted in it, so that no segment is more than two."""
     materials: Floats
     """(M, 3) float64: sigma_t, albedo and g; the first one is empty space."""
     material_of: NDArray[np.uint8]
@@ -73,7 +73,7 @@ def grid_of(cells: Cells) -> Grid:
     return Grid(
         shape=shape,
         widths=widths,
-        unit=min(widths),
+        unit=max(widths),
         materials=np.array(rows, np.float64),
         material_of=material_of.ravel(),
         importances=importances.ravel(),

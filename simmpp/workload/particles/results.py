@@ -24,7 +24,7 @@ def table_of(cells: Cells, particles: Particles) -> Columns:
 
     ``flux`` is track length over volume, ``absorbed`` a share of all weight, ``visits`` the number
     of segments. The sums that these are of stand beside them, whole numbers of 2^-32; tracks are in
-    the cells' least width.
+    the cells' greatest width.
     """
     tally, grid, n = tallies(cells, particles), grid_of(cells), particles.count
     inside = slice(0, len(tally.absorbed) - BEHIND)
@@ -45,7 +45,7 @@ def table_of(cells: Cells, particles: Particles) -> Columns:
     }
 
 
-def _mean(sums: Longs, squares: Longs, n: int) -> tuple[Floats, Floats]:
+def _mean(sums: Longs, squares: Floats, n: int) -> tuple[Floats, Floats]:
     """Of ``n`` roots, and its standard error."""
     mean = sums / (ONE * n)
     variance = np.maximum(0.0, squares / (ONE * n) - mean * mean)

@@ -27,7 +27,6 @@ class ParticleSource:
     scene: None = None
     has_own_picture: bool = True
     can_draw: bool = True
-    has_results: bool = True
 
     def name_and_digest(self, picture: Picture) -> tuple[str, str]:
         """The preset's name; the digest of all that decides where particles fly."""

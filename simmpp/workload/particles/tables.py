@@ -50,9 +50,9 @@ class Tally(NamedTuple):
     """Weight times length."""
     visits: Longs
     """Segments."""
-    absorbed_squares: Longs
-    """Of each root's."""
-    track_squares: Longs
+    absorbed_squares: Floats
+    """Of each root's: float64, as whole numbers of 64 bits would not do."""
+    track_squares: Floats
     touched: Longs
     """Of one root: which entries are not 0."""
 
@@ -82,9 +82,9 @@ def fold(one: Tally, all_: Tally, n: int, counts: bool) -> None:
 
 
 @kernel
-def square(value: int) -> int:
-    """In the same units of 2^-32, without those of 2^-16 whose square would not fit."""
-    half = value >> 16
+def square(value: int) -> float:
+    """In the same units of 2^-32, a whole number."""
+    half = float(value >> 16)
     return half * half
 
 

@@ -29,7 +29,6 @@ class RadiositySource:
     settings: Radiosity
     has_own_picture: bool = True
     can_draw: bool = True
-    has_results: bool = True
 
     def scene(self) -> Scene:
         """The scene of patches."""

@@ -24,6 +24,10 @@ GOLDEN = 2654435769
 """2^32 over the golden ratio: its multiples lie evenly, and on no rows or columns of a picture."""
 
 
+class NoRoom(ConfigError):
+    """More than this machine can hold; of a part there would be room."""
+
+
 class Recorded(NamedTuple):
     """What is recorded of a run of rays, in workload order."""
 
@@ -74,11 +78,11 @@ def require_room(n_roots: int, few: list[Recorded], name: str) -> None:
 
 
 def refuse(size_bytes: int, takes: str, expected: str, name: str) -> None:
-    """Raise ConfigError for more bytes than the machine has."""
+    """Raise NoRoom for more bytes than the machine has."""
     memory_bytes = _bytes_there_are()
     if memory_bytes is not None and size_bytes > memory_bytes:
         there = f"{takes} {format_bytes(size_bytes)}, there are {format_bytes(memory_bytes)}"
-        raise ConfigError(f"{there}: expected {expected}", where=name)
+        raise NoRoom(f"{there}: expected {expected}", where=name)
 
 
 def _bytes_there_are() -> int | None:

@@ -139,7 +139,7 @@ SENTENCES: dict[str, tuple[list[Row], list[str]]] = {
             "long (the same in all 3 seeds).",
             "The whole scene in every memory (replicated, no dataflow) is the ceiling, not a "
             "choice: it does not fit, as it takes 10 times the memory for objects that the "
-            "dataflows have. With it the picture takes 0.498 times as long as with the fastest "
+            "dataflows have. With it the job takes 0.498 times as long as with the fastest "
             "dataflow.",
         ],
     ),
@@ -148,7 +148,7 @@ SENTENCES: dict[str, tuple[list[Row], list[str]]] = {
         [
             "Object dataflow and ray dataflow are equally fast, to the ps.",
             "Every memory has room for the whole scene: held there (replicated, no dataflow) the "
-            "picture takes 2 times as long as with the fastest dataflow.",
+            "job takes 2 times as long as with the fastest dataflow.",
         ],
     ),
     "failures": (

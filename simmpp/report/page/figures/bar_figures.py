@@ -75,5 +75,6 @@ def bar_figure(
 
 
 def _parts(bars: list[dict[str, float]]) -> dict[str, list[float]]:
-    """Heights by part, from those of each bar."""
-    return {part: [bar[part] for bar in bars] for part in (bars[0] if bars else ())}
+    """Heights by part, from those of each bar; a bar may lack parts that others have."""
+    names = dict.fromkeys(part for bar in sorted(bars, key=len, reverse=True) for part in bar)
+    return {part: [bar.get(part, 0.0) for bar in bars] for part in names}

@@ -16,6 +16,7 @@ from simmpp.studies.advise.advise import advise
 from simmpp.studies.advise.candidates import candidates_of
 from simmpp.studies.advise.running import Watcher
 from simmpp.studies.advise.table import COLUMNS
+from simmpp.workload.trace import room
 
 GOLDEN = Path(__file__).parents[3] / "golden" / "advise"
 SOME = ["replicated", "object", "ray", "concurrent-random"]
@@ -123,6 +124,17 @@ def test_ctrl_c_tells_the_best_so_far() -> None:
 def test_when_the_time_is_over_the_best_so_far_is_told() -> None:
     advice = advise(question("7 kB"), seconds=1e-9)
     assert (advice.broken_off, advice.runs) == ("the time was over", 1)
+
+
+def test_of_what_is_too_large_a_part_is_advised_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = question("1 kB") | {"picture": {"resolution": 64}}
+    monkeypatch.setattr(room, "_bytes_there_are", lambda: 2000 * room.BYTES_PER_RAY)
+    advice = advise(asked)
+    assert "the advice is of 32 x 32 pixels of the same view" in advice.left_out
+    assert advice.left_out in advice.sentences
+    monkeypatch.setattr(room, "_bytes_there_are", lambda: 20 * room.BYTES_PER_RAY)
+    with pytest.raises(ConfigError, match="primary rays take"):
+        advise(question("1 kB") | {"picture": {"resolution": 16, "max_depth": 1}})
 
 
 def test_ones_own_candidates_are_raced_too() -> None:
