@@ -115,6 +115,7 @@ def _sizes(
     pairs = known if talks else min(known, 2 * workload.n_tests * each)
     return Sizes(
         nb=nb,
+        island=placement.island,
         objects=n_objects,
         rays=n_rays,
         misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),

@@ -11,7 +11,15 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from builders import Case, random_case, served, with_capacity, with_other_rays, with_repeats
+from builders import (
+    Case,
+    random_case,
+    served,
+    some_stealing,
+    with_capacity,
+    with_other_rays,
+    with_repeats,
+)
 from implementations import result_of, run
 from numpy.typing import NDArray
 
@@ -40,6 +48,8 @@ def other_case(seed: int) -> Case:
     if seed % 2:
         workload = replace(workload, kinds=as_patches(workload))
     case = replace(case, workload=workload, placement=placement)
+    if placement.window == 1:
+        case = some_stealing(case, seed)
     if seed % 3 == 0:
         return with_capacity(case, seed)
     return served(case, SERVICES[seed % len(SERVICES)], seed)
