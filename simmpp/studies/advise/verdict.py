@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from simmpp.studies.advise.confidence import LEAST_SEEDS, Floats, weighted_means
-from simmpp.studies.advise.racing import Race
+from simmpp.studies.advise.racing import CONFIDENCE, Race
 
 EQUAL = 0.01
 """What is within a hundredth of the best is as good: then the fewest nodes and the simplest setup
@@ -83,6 +83,8 @@ class Contest:
         sure = likely[chosen]
         if math.isfinite(self.limit):
             sure = self._sure_of_limit(means[known.index(chosen)])
+        if any(race.contenders[n].is_drawn for n in known):
+            sure = min(sure, CONFIDENCE)  # as those that left may have done so by mistake
         return Verdict(chosen, ties, is_within, sure, likely, regret)
 
     def _left(self) -> list[int]:

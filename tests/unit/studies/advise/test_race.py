@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from simmpp.studies.advise.confidence import LEAST_SEEDS, weighted_means
-from simmpp.studies.advise.racing import Ask, Contender, Race
+from simmpp.studies.advise.racing import CONFIDENCE, Ask, Contender, Race
 from simmpp.studies.advise.verdict import Contest
 
 
@@ -45,13 +45,14 @@ def noisy(rng: np.random.Generator, mean: float, spread: float = 0.04) -> list[f
 
 
 def test_who_is_best_with_every_seed_is_surely_the_best() -> None:
+    """No more is claimed than the race itself can be trusted, where seeds differ."""
     rng = np.random.default_rng(0)
     rivals = [noisy(rng, 1.3, 0.02) for _ in range(5)]
     best = [min(row[s] for row in rivals) / 1.06 for s in range(LEAST_SEEDS)]
     contest, _ = contest_on([*rivals, best])
     contest.run()
     verdict = contest.verdict()
-    assert (verdict.chosen, verdict.sure) == (5, 1.0)
+    assert (verdict.chosen, verdict.likely[5], verdict.sure) == (5, 1.0, CONFIDENCE)
 
 
 def test_two_that_differ_by_chance_alone_are_not_sure() -> None:
