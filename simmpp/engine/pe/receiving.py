@@ -24,8 +24,8 @@ from simmpp.engine.pe.peers import hear_load
 from simmpp.engine.pe.ready import cross, make_ready
 from simmpp.engine.pe.sending import answer, forget
 from simmpp.engine.pe.stealing import end_spell, give_pixels, take_pixels
+from simmpp.engine.pe.tables.tallies import take_deposits
 from simmpp.engine.pe.talking import get_on, hear
-from simmpp.engine.pe.tallies import take_deposits
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_receive
 from simmpp.machine.messages import DEPOSIT, LOAD, OBJECT, RAYS, REQUEST, STEAL, USER

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.errors import ConfigError
-from simmpp.engine.tallies import reduction_of, sends_deposits
+from simmpp.engine.tables.tallies import reduction_of, sends_deposits
 from simmpp.machine.collective import barrier_ps
 from simmpp.machine.limits import CLOCK_LIMIT_PS, MOST_BYTES, beyond_the_clock
 from simmpp.machine.machine import Machine
