@@ -9,7 +9,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from simmpp.common.compiled import source_digest
+from simmpp.common.code.source import source_digest
 from simmpp.common.modules import METHODS, PLACEMENT, TRACER
 
 LIBRARIES = ("simmpp", "numpy", "numba", "simpy", "embreex", "mapbox-earcut")

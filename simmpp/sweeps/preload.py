@@ -32,7 +32,7 @@ def _ended_with_parent() -> Iterator[None]:
 
 
 with _ended_with_parent():
-    from simmpp.common.compiled import is_compiled
+    from simmpp.common.code.kept import is_compiled
     from simmpp.common.modules import ENGINE
     from simmpp.engine.simulate import DEFAULT_ENGINE
     from simmpp.sweeps.worker import run_task as run_task

@@ -15,7 +15,7 @@ from functools import cache
 from threading import Lock
 from typing import Generic, TypeVar
 
-from simmpp.common.compiled import compiled_by_one
+from simmpp.common.code.kept import compiled_by_one
 from simmpp.common.errors import SimmppError
 from simmpp.common.modules import ENGINE
 from simmpp.engine.filling import effective_fraction

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from simmpp.common.compiled import source_digest
+from simmpp.common.code.source import source_digest
 from simmpp.common.modules import TRACER
 from simmpp.scene.columns import columns_of
 from simmpp.scene.scene import Material, Scene

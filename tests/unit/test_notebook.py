@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import simmpp
 from simmpp import notebook
-from simmpp.common.compiled import _closure
+from simmpp.common.code.source import closure
 from simmpp.common.errors import ConfigError
 from simmpp.common.modules import METHODS
 from simmpp.plot.curves import Panel
@@ -161,6 +161,6 @@ def test_a_sweep_of_which_all_failed() -> None:
 
 
 def test_what_draws_results_does_not_decide_them() -> None:
-    deciding = _closure(METHODS)
+    deciding = closure(METHODS)
     assert "simmpp.engine.result" in deciding
     assert not [name for name in deciding if name.startswith(("simmpp.notebook", "simmpp.plot"))]

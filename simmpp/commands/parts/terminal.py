@@ -103,7 +103,7 @@ def announce_compilation(*, simulating: bool = True) -> None:
     """
     from simmpp.commands.parts.options import available_cores
     from simmpp.common.cache import cache_folder
-    from simmpp.common.compiled import is_compiled, keeps_code
+    from simmpp.common.code.kept import is_compiled, keeps_code
     from simmpp.common.modules import CANDIDATES, ENGINE
     from simmpp.sweeps.compile_engine import engine_compiled_beside
 

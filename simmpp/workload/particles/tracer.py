@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.common.compiled import source_digest
+from simmpp.common.code.source import source_digest
 from simmpp.common.errors import ConfigError
 from simmpp.workload.digest import hashed
 from simmpp.workload.particles.cells import GROUP_BYTES, STATE_BYTES, Cells

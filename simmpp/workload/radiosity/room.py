@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simmpp.common.compiled import source_digest
+from simmpp.common.code.source import source_digest
 from simmpp.common.errors import SceneError
 from simmpp.common.modules import RADIOSITY
 from simmpp.scene.scene import Scene

@@ -15,10 +15,11 @@ import pytest
 
 import simmpp
 from simmpp.common import compiled, modules
+from simmpp.common.code.source import source_digest
 
 PACKAGE = Path(simmpp.__file__).parent
 PROGRAM = """
-from simmpp.common.compiled import keeps_code
+from simmpp.common.code.kept import keeps_code
 from simmpp.machine.transfer import transfer_ps
 print(keeps_code(), transfer_ps(128, 256_000_000))
 """
@@ -50,7 +51,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def digest_in(folder: Path, module: str) -> str:
-    code = f"from simmpp.common.compiled import source_digest; print(source_digest({module!r}))"
+    code = f"from simmpp.common.code.source import source_digest; print(source_digest({module!r}))"
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True
     )
@@ -93,13 +94,13 @@ def test_a_digest_covers_what_its_module_imports(
 @pytest.mark.parametrize("module", ["simmpp.no_such_module", "simmpp.workload.nothing"])
 def test_a_module_without_a_file_has_no_digest(module: str) -> None:
     with pytest.raises(ModuleNotFoundError, match=module):
-        compiled.source_digest(module)
+        source_digest(module)
 
 
 @pytest.mark.parametrize("module", modules.NAMED_MODULES)
 def test_modules_named_by_a_string_are_there(module: str) -> None:
     assert importlib.util.find_spec(module)
-    assert len(compiled.source_digest(module)) == 16
+    assert len(source_digest(module)) == 16
 
 
 def test_no_other_file_names_a_module_by_a_string() -> None:
