@@ -12,7 +12,7 @@ from simmpp.cli import main
 from simmpp.common.errors import ConfigError
 from simmpp.config.config import load_config
 from simmpp.sweeps.grid import MOST_POINTS, grid
-from simmpp.workload.trace import room
+from simmpp.workload import room
 
 
 def test_pictures_that_no_memory_holds(monkeypatch: pytest.MonkeyPatch) -> None:

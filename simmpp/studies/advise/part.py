@@ -5,7 +5,7 @@ from __future__ import annotations
 from simmpp.config.config import Config, with_key
 from simmpp.run.inputs import workload_of
 from simmpp.studies.advise.running import Watcher
-from simmpp.workload.trace.room import NoRoom
+from simmpp.workload.room import NoRoom
 from simmpp.workload.workload import Workload
 
 LEAST_PIXELS = 16

@@ -21,7 +21,7 @@ from simmpp.workload.particles.tables import (
     Tally,
 )
 from simmpp.workload.particles.walk import walk
-from simmpp.workload.trace.threads import Run
+from simmpp.workload.threads import Run
 
 ROOTS = 4096
 """Of a batch, at least."""

@@ -14,8 +14,8 @@ from simmpp.workload.particles.grid import Grid, Rules, centroids, grid_of, rule
 from simmpp.workload.particles.settings import Particles
 from simmpp.workload.particles.tables import Tables, Tally
 from simmpp.workload.particles.walk import homes
-from simmpp.workload.trace.room import BYTES_PER_RAY, FEW, MOST_RAYS, refuse
-from simmpp.workload.trace.threads import mapping
+from simmpp.workload.room import BYTES_PER_RAY, FEW, MOST_RAYS, refuse
+from simmpp.workload.threads import mapping
 from simmpp.workload.trace.tracer import Progress, pixels_of
 from simmpp.workload.workload import MESH, PARTICLE, Workload, frozen
 

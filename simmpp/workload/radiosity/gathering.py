@@ -13,8 +13,8 @@ from scipy.sparse import csr_array
 from simmpp.common.errors import SceneError
 from simmpp.workload.radiosity.room import Room
 from simmpp.workload.radiosity.settings import LEAST_RAYS
+from simmpp.workload.room import require_memory, require_numbers
 from simmpp.workload.trace.ray_batch import RayBatch
-from simmpp.workload.trace.room import require_memory, require_numbers
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

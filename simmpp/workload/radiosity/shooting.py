@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.workload.radiosity.room import Room
+from simmpp.workload.room import require_numbers
 from simmpp.workload.trace.ray_batch import RayBatch
-from simmpp.workload.trace.room import require_numbers
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

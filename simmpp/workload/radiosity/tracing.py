@@ -11,11 +11,11 @@ from simmpp.workload.radiosity.gathering import Gathering
 from simmpp.workload.radiosity.room import Room
 from simmpp.workload.radiosity.settings import GATHERING
 from simmpp.workload.radiosity.shooting import UNIT_W, Shooting
+from simmpp.workload.room import Recorded
+from simmpp.workload.threads import mapping
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.generations import Spawning
 from simmpp.workload.trace.ray_batch import RayBatch
-from simmpp.workload.trace.room import Recorded
-from simmpp.workload.trace.threads import mapping
 from simmpp.workload.trace.tracer import Made, Progress, Tracing, recorded, workload_of
 from simmpp.workload.workload import Workload
 

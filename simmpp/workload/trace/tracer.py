@@ -18,6 +18,14 @@ from simmpp.scene.scene import Scene
 from simmpp.scene.wire import sizes_on_the_wire
 from simmpp.workload.digest import digest_of
 from simmpp.workload.picture import PATH, Picture
+from simmpp.workload.room import (
+    Recorded,
+    few_roots,
+    require_memory,
+    require_numbers,
+    require_room,
+)
+from simmpp.workload.threads import Run, mapping
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.frame import Frame, frame_of
 from simmpp.workload.trace.generations import Rules, children, first_generation, spawning
@@ -25,14 +33,6 @@ from simmpp.workload.trace.geometry import Geometry, flatten
 from simmpp.workload.trace.itineraries import find_itineraries
 from simmpp.workload.trace.path.generations import drawn_rays
 from simmpp.workload.trace.ray_batch import RayBatch, joined
-from simmpp.workload.trace.room import (
-    Recorded,
-    few_roots,
-    require_memory,
-    require_numbers,
-    require_room,
-)
-from simmpp.workload.trace.threads import Run, mapping
 from simmpp.workload.workload import SHADOW, Workload, frozen
 
 BATCH = 65536

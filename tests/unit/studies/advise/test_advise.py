@@ -16,7 +16,7 @@ from simmpp.studies.advise.advise import advise
 from simmpp.studies.advise.candidates import candidates_of
 from simmpp.studies.advise.running import Watcher
 from simmpp.studies.advise.table import COLUMNS
-from simmpp.workload.trace import room
+from simmpp.workload import room
 
 GOLDEN = Path(__file__).parents[3] / "golden" / "advise"
 SOME = ["replicated", "object", "ray", "concurrent-random"]

@@ -14,6 +14,7 @@ from particle_cells import preset
 
 from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
+from simmpp.workload import room
 from simmpp.workload.check import check
 from simmpp.workload.particles import follow
 from simmpp.workload.particles.cells import Cells
@@ -21,7 +22,6 @@ from simmpp.workload.particles.functions import log_of, on_circle
 from simmpp.workload.particles.grid import ONE
 from simmpp.workload.particles.settings import Particles
 from simmpp.workload.particles.tracer import digest_of, tallies, trace
-from simmpp.workload.trace import room
 from simmpp.workload.workload import ARRAYS, PARTICLE, Workload
 
 SHIELD = preset("shield")

@@ -165,7 +165,7 @@ def test_light_that_never_ends_is_refused(method: str) -> None:
 
 
 def test_too_many_rays_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simmpp.workload.trace.room.MOST_RAYS", 1000)
+    monkeypatch.setattr("simmpp.workload.room.MOST_RAYS", 1000)
     for method in METHODS:
         room = room_of(scene_of(), Radiosity(method=method, **SMALL))  # type: ignore[arg-type]
         with pytest.raises(ConfigError, match=r"more than 1000 rays"):

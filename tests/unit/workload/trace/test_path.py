@@ -15,11 +15,11 @@ from simmpp.common.errors import ConfigError
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import simulate
 from simmpp.scene.scene import Light, MeshPart, Scene
+from simmpp.workload import room as room_of_rays
 from simmpp.workload.check import check
 from simmpp.workload.digest import digest_of
 from simmpp.workload.exchange.exchange import export_workload, import_workload
 from simmpp.workload.picture import Picture
-from simmpp.workload.trace import room as room_of_rays
 from simmpp.workload.trace import tracer
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.path.radiance import light_of_roots

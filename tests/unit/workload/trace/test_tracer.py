@@ -13,10 +13,10 @@ import pytest
 
 from simmpp.common.errors import ConfigError, SceneError
 from simmpp.scene.scene import Camera, Cone, Light, Material, Polygon, Scene, Sphere
+from simmpp.workload import room
 from simmpp.workload.check import check
 from simmpp.workload.picture import Picture
 from simmpp.workload.sources import load_scene
-from simmpp.workload.trace import room
 from simmpp.workload.trace.embree import Intersector
 from simmpp.workload.trace.tracer import trace
 from simmpp.workload.workload import REFLECTED, REFRACTED, SHADOW, Workload
