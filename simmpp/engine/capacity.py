@@ -26,7 +26,7 @@ from simmpp.common.compiled import njit
 from simmpp.common.errors import ConfigError
 from simmpp.common.units import counted, format_bytes, shown, write_bytes
 from simmpp.engine.residency import resident_bytes
-from simmpp.engine.tallies import copy_bytes
+from simmpp.engine.tables.tallies import copy_bytes
 from simmpp.machine.machine import POLLED, Machine
 from simmpp.placement.placement import Placement
 from simmpp.placement.rooms import LEAST, Capacity, Room

@@ -27,9 +27,9 @@ from simmpp.engine.local_only import run_alone
 from simmpp.engine.network import move_head
 from simmpp.engine.pe.bounds.rooms import note_arrival_of
 from simmpp.engine.pe.gets import is_get, send_back
-from simmpp.engine.pe.rounds import round_begins
 from simmpp.engine.pe.serving import serve
 from simmpp.engine.pe.step import step
+from simmpp.engine.pe.tables.rounds import round_begins
 from simmpp.engine.record.log import note_arrival
 from simmpp.engine.state import State, room_lacking
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simmpp.common.randomness import key
-from simmpp.engine.arrays.layout import MACHINE, Sizes, allocated
+from simmpp.engine.arrays.layout import MACHINE, allocated
 from simmpp.engine.arrays.records import (
     COPY,
     EXACT,
@@ -24,7 +24,6 @@ from simmpp.engine.bounds import room_arrays
 from simmpp.engine.capacity import Needs
 from simmpp.engine.pe.pace import noise_array, pace_columns, pace_scalars
 from simmpp.engine.record.counters import first_width
-from simmpp.engine.record.log import LOG_ROWS
 from simmpp.engine.record.recording import NOTHING, Recording
 from simmpp.engine.residency import (
     Arrays,
@@ -33,9 +32,10 @@ from simmpp.engine.residency import (
     resident_bytes,
     row_bytes,
 )
-from simmpp.engine.rounds import first_roots, roots_at_once, round_arrays, round_scalars
+from simmpp.engine.sizes import sizes_of
 from simmpp.engine.state import State
-from simmpp.engine.tallies import deposit_arrays, sends_deposits
+from simmpp.engine.tables.rounds import first_roots, roots_at_once, round_arrays, round_scalars
+from simmpp.engine.tables.tallies import deposit_arrays
 from simmpp.machine.limits import least_ps
 from simmpp.machine.machine import Machine
 from simmpp.machine.service import copies
@@ -69,7 +69,7 @@ def new_state(
     """The state at time 0: all primary rays of its pixels are ready on each PE."""
     policy = parameters.rules
     everything = policy.all_resident
-    arrays = allocated(_sizes(workload, placement, parameters, recording))
+    arrays = allocated(sizes_of(workload, placement, parameters, recording))
     arrays |= resident_arrays(workload, placement, everything)
     arrays |= _given_arrays(workload, machine, placement)
     arrays |= round_arrays(workload, placement) | deposit_arrays(workload, placement)
@@ -101,46 +101,6 @@ def new_state(
     if recording.counters:
         state.arrays["slices"]["load"] = state.pes["load"]
     return state
-
-
-def _sizes(
-    workload: Workload, placement: Placement, parameters: PolicyParameters, recording: Recording
-) -> Sizes:
-    nb, n_objects, n_rays = placement.processors, workload.n_objects, workload.n_rays
-    # One step sends at most a request per object (per ray, unmerged), a batch and a load per PE.
-    sent = (n_objects if parameters.merge_requests else n_rays) + 2 * nb + 2  # and an escape
-    leaves = sends_deposits(workload, placement)
-    sent += nb if leaves else 0  # a batch of deposits as well
-    each = placement.island if parameters.rules.to_holders else 1  # PEs that a ray may go to
-    known = nb * placement.island
-    talks = parameters.rules.talks or parameters.steals or leaves
-    pairs = known if talks else min(known, 2 * workload.n_tests * each)
-    return Sizes(
-        nb=nb,
-        objects=n_objects,
-        rays=n_rays,
-        misses=1 + min(nb * n_objects, n_rays + nb * (_most_kept(workload, placement) + 1)),
-        peers=1 + pairs,
-        sent=sent,
-        messages=2 * min(sent, n_objects + 2 * nb + 2),  # so that one more step finds room
-        deposits=leaves,
-        talks=parameters.rules.talks,
-        steals=parameters.steals,
-        tested=workload.n_tests if recording.tests else 0,
-        ended=n_rays if recording.ends else 0,
-        logged=2 * LOG_ROWS + sent if recording.sink is not None else 0,
-        counted=nb if recording.counters else 0,
-        bounded=placement.capacity is not None and placement.capacity.has_credits,
-        measured=placement.capacity is not None,
-    )
-
-
-def _most_kept(workload: Workload, placement: Placement) -> int:
-    """Fetched objects that a PE keeps at most."""
-    if not placement.transient_bytes:
-        return placement.transient
-    smallest_first = np.cumsum(np.sort(workload.object_bytes))
-    return int(np.searchsorted(smallest_first, placement.transient_bytes, side="right"))
 
 
 def _given_arrays(workload: Workload, machine: Machine, placement: Placement) -> Arrays:

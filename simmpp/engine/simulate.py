@@ -11,16 +11,17 @@ from simmpp.engine.bounds import memory_use
 from simmpp.engine.capacity import require_room
 from simmpp.engine.check import check_fit
 from simmpp.engine.compiled_engine import CompiledRun
+from simmpp.engine.conclusion import concluded
 from simmpp.engine.filling import filled
 from simmpp.engine.hook_errors import told_of_hooks
 from simmpp.engine.initial import new_state
-from simmpp.engine.other_rays import require_known
 from simmpp.engine.record.log import Collector
 from simmpp.engine.record.recording import NOTHING, Recording
-from simmpp.engine.result import Result, concluded
+from simmpp.engine.result import Result
 from simmpp.engine.simpy_engine import SimpyRun
 from simmpp.engine.state import starved
-from simmpp.engine.tallies import reduction_of
+from simmpp.engine.tables.refused import require_known
+from simmpp.engine.tables.tallies import reduction_of
 from simmpp.machine.limits import beyond_the_clock, check_counters, total_compute_ps
 from simmpp.machine.machine import Machine
 from simmpp.placement.placement import Placement

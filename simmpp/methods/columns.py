@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
-from simmpp.engine import columns, memory_use, residuals
+from simmpp.engine import columns, memory_use
+from simmpp.engine.tables import residuals
 
 PLACE = ("scene", "processors", "fraction")
 """What names a point but its policy, with the columns that only a sweep changes."""

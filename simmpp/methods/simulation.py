@@ -7,9 +7,9 @@ import numpy as np
 from simmpp.common.files import Row
 from simmpp.engine.capacity import Needs, fits, lacking, needs_of
 from simmpp.engine.memory_use import COLUMNS, REASON
-from simmpp.engine.residuals import LEFT
 from simmpp.engine.result import Result
 from simmpp.engine.simulate import simulate
+from simmpp.engine.tables.residuals import LEFT
 from simmpp.methods.case import Case
 from simmpp.methods.columns import BOUNDED, BY_USE, FURTHER, NUMBERS
 from simmpp.placement.placement import Placement

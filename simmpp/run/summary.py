@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from simmpp.common.units import counted, format_bytes, format_ps
-from simmpp.engine.residuals import LEFT
+from simmpp.engine.tables.residuals import LEFT
 from simmpp.machine.topology import topology_of
 from simmpp.machine.uneven import total_speed
 from simmpp.policy.parameters import CLASSICAL

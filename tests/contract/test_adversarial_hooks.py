@@ -11,7 +11,7 @@ from dataclasses import asdict, replace
 from typing import get_args
 
 import pytest
-from builders import Case, random_case, with_capacity
+from builders import Case, random_case, some_stealing, with_capacity
 from implementations import run
 
 from simmpp.common.errors import ModelError
@@ -124,7 +124,7 @@ def adversary(
 
 
 def adversarial_case(seed: int) -> Case:
-    case = random_case(seed)
+    case = some_stealing(random_case(seed), seed)
     packing = POLICIES["adversary"].packings[seed % 3]
     if seed % 4 == 1:
         case = replace(case, placement=replace(case.placement, transient_bytes=700 * seed))

@@ -11,7 +11,15 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from builders import Case, random_case, served, with_capacity, with_other_rays, with_repeats
+from builders import (
+    Case,
+    random_case,
+    served,
+    some_stealing,
+    with_capacity,
+    with_other_rays,
+    with_repeats,
+)
 from implementations import result_of, run
 from numpy.typing import NDArray
 
@@ -26,21 +34,26 @@ SEEDS = range(FIRST_SEED, FIRST_SEED + CASES)
 
 
 def other_case(seed: int) -> Case:
-    """The random case of a seed with rays of other kinds; each third has a capacity."""
+    """The random case of a seed with rays of other kinds; each fifth has a capacity."""
     case, rng = random_case(seed), np.random.default_rng((seed, 20))
     workload = with_other_rays(rng, with_repeats(rng, case.workload))
-    window, tallies = int(rng.choice((1, 1, 2, 3))), str(rng.choice(("send", "send", "reduce")))
-    if seed % 3 == 0 or case.placement.islands > 1:
+    window = int(rng.choice((1, 1, 2, 3)))
+    tallies = str(rng.choice(("send", "send", "send", "reduce")))
+    if seed % 5 == 0 or case.placement.islands > 1:
         tallies = "reduce"
     placement = replace(case.placement, window=window, tallies=tallies)
     if rng.random() < 0.7:
         drawn = rng.integers(0, int(rng.integers(2, 7)), workload.n_primaries)
         rounds = np.unique(drawn, return_inverse=True)[1].astype(np.int32)
         workload = replace(workload, root_rounds=rounds if rounds.any() else rounds[:0])
+    if rng.random() < 0.7:
+        workload = replace(workload, object_results=rng.integers(1, 4000, workload.n_objects))
     if seed % 2:
         workload = replace(workload, kinds=as_patches(workload))
     case = replace(case, workload=workload, placement=placement)
-    if seed % 3 == 0:
+    if placement.window == 1:
+        case = some_stealing(case, seed)
+    if seed % 5 == 0:
         return with_capacity(case, seed)
     return served(case, SERVICES[seed % len(SERVICES)], seed)
 
@@ -73,8 +86,9 @@ def test_random_machines_do_all_of_this() -> None:
         found["deposits"] += result.deposits > 0
         found["reductions"] += result.reduction_ps > 0
         found["bounded"] += result.barriers > 0 and case.placement.capacity is not None
+        found["rounds with deposits"] += result.deposits > 0 and result.barriers > 0
         found["waits"] += result.makespan_ps > result_of("compiled", on_time).makespan_ps
-    assert min(found.values()) > len(SEEDS) // 20 and len(found) == 7, found
+    assert min(found.values()) > len(SEEDS) // 20 and len(found) == 8, found
 
 
 def test_tallies_of_simulated_tests_are_those_of_the_workload() -> None:

@@ -19,6 +19,7 @@ from simmpp.workload.radiosity.room import room_of
 from simmpp.workload.radiosity.settings import Radiosity
 from simmpp.workload.radiosity.source import RadiositySource
 from simmpp.workload.radiosity.tracing import trace_patches
+from simmpp.workload.tallies import tally_of, tally_of_tests
 
 GREY, LAMP = Material((0.6, 0.6, 0.6)), Material((0.3, 0.3, 0.3), emission=(3.0, 2.0, 1.0))
 FACE = quad((3, 3, 9.5), (3, 7, 9.5), (7, 7, 9.5), (7, 3, 9.5), material=1)
@@ -54,8 +55,11 @@ def test_both_engines_are_the_oracle(method: str) -> None:
         assert result.tested_objects is not None
         tests = result.tested_rays, result.tested_objects
         assert source.verify(Picture(), workload, *tests) == ""
+        told, made = tally_of(workload), tally_of_tests(workload, *tests)
+        assert all(np.array_equal(a, b) for a, b in zip(told, made, strict=True))
+        assert told.counts.sum() == (workload.hits >= 0).sum()
         assert len(result.round_ends_ps) == workload.n_rounds
-        assert result.round_ends_ps.max() == result.makespan_ps
+        assert result.round_ends_ps.max() + result.reduction_ps == result.makespan_ps
         assert ("residual_tenth_ps" in result.residuals_ps) == bool(
             (workload.round_residuals <= 0.1).any()
         )

@@ -46,6 +46,7 @@ class Rounds(Bounded):
             begin = self.begins[pe.round]
             if begin is None or begin > time:
                 break
+            pe.asked = set()
             self.start(pe, [ray for ray in pe.later if self.round_of[ray] == pe.round])
             pe.round += 1
             pe.owes += barrier_ps(self.machine) if self.chooses() else 0
@@ -57,7 +58,7 @@ class Rounds(Bounded):
 
     def start(self, pe: PE, roots: list[int]) -> None:
         """Behind the pixels that are not touched, breadth-first before all else."""
-        if self.credits:
+        if self.credits or self.steals:
             pe.pixels += roots
             return
         pixels = [n for n, ray in enumerate(pe.ready) if ray in pe.untouched]

@@ -24,13 +24,15 @@ class Stealing(Dispatch):
         victim = left[loads.index(max(loads))]
         pe.asked.add(victim)
         pe.awaits = True
-        return self.send(clock, pe, victim, [Part(STEAL, 0)])
+        return self.send(clock, pe, victim, [Part(STEAL, 0, words=(pe.round,))])
 
     def answer_thief(self, clock: int, pe: PE, message: Message) -> int:
         """A thief gets half of the pixels that are left, from the end; returns the end of that."""
         if message.parts[0].pixels is not None:
             return clock
         kept = len(pe.pixels) - len(pe.pixels) // 2
+        if message.parts[0].words != (pe.round,):
+            kept = len(pe.pixels)
         given = tuple(pe.pixels[kept:])
         pe.pixels = pe.pixels[:kept]
         return self.send(clock, pe, message.source, [Part(STEAL, ANSWER_BYTES, pixels=given)])
@@ -39,6 +41,7 @@ class Stealing(Dispatch):
         """A thief has its answer."""
         if part.pixels is not None:
             assert pe.awaits
-            assert not pe.pixels
             pe.awaits = False
+        if part.pixels:
+            assert not pe.pixels
             pe.pixels = list(part.pixels)

@@ -101,3 +101,16 @@ def test_a_run_ends_with_its_last_deposit(implementation: str) -> None:
     assert outcome.bytes_sent == 16 + 4
     nothing = run(implementation, with_results(PolicyParameters(CEILING), "none"))
     assert (nothing.makespan_ps, nothing.tally_messages) == (FIRST, 0)
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_round_waits_for_its_deposits(implementation: str) -> None:
+    case = case_of(PolicyParameters(CEILING), [(0, [1]), (0, [0])])
+    said = {"object_results": np.array([0, 16]), "root_rounds": np.array([0, 1], np.int32)}
+    placement = replace(case.placement, tallies="send")
+    outcome = run(
+        implementation,
+        replace(case, workload=replace(case.workload, **said), placement=placement),
+    )
+    received = FIRST + 30 + 150 + 44
+    assert outcome.round_ends == [received, received + BARRIER + FIRST]

@@ -58,6 +58,8 @@ class Sizes:
     """What the lengths of arrays are made of."""
 
     nb: int
+    island: int
+    """PEs of an island."""
     objects: int
     rays: int
     misses: int
@@ -158,8 +160,10 @@ ARRAYS = {
     "message_marks": Array(I4, lambda n: 2),
     # Words of messages of the policy's own, USER_WORDS for each place; empty if it sends none.
     "user_words": Array(I8, lambda n: USER_WORDS * n.messages if n.talks else 0),
-    # Beside ``peers``: the idle spell in which a PE has asked the other for pixels.
-    "asked_in": Array(I4, lambda n: n.peers if n.steals else 0),
+    # Of PE k and the one at place i of its island at k * island + i: the idle spell in which k has
+    # asked that for pixels; the load that it has told last, plus 1, 0 for none.
+    "asked_in": Array(I4, lambda n: n.nb * n.island if n.steals else 0),
+    "told_loads": Array(I4, lambda n: n.nb * n.island if n.steals else 0),
     # Misses with unasked rays: list 2 k of PE k, or 2 k + 1 from ask_from rays on.
     "unasked_ends": Array(I4, lambda n: 4 * n.nb),
     "unasked_links": Array(I4, lambda n: 2 * n.misses),

@@ -47,7 +47,7 @@ from simmpp.engine.pe.misses import is_holder, set_unasked, unfile
 from simmpp.engine.pe.peers import known_load
 from simmpp.engine.pe.sending import send_made_up, send_rays, send_request
 from simmpp.engine.pe.showing import show_destination, show_object, view_of
-from simmpp.engine.pe.tallies import send_deposits
+from simmpp.engine.pe.tables.tallies import send_deposits
 from simmpp.engine.pe.telling import collect_peers, refresh_loads, return_credits
 from simmpp.engine.record.counters import note_work
 from simmpp.policy.record import consult

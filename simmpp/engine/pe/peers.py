@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.hashtable import add, append, find
-from simmpp.engine.arrays.records import BY_NIC, EXACT, NO_INFO, NONE, SAMPLED, TWO, Row, Run
-from simmpp.engine.arrays.views import exchanged, peer_rows, peers, pes
+from simmpp.engine.arrays.records import (
+    BY_NIC,
+    EXACT,
+    NO_INFO,
+    NONE,
+    PIGGYBACK,
+    SAMPLED,
+    TWO,
+    Row,
+    Run,
+)
+from simmpp.engine.arrays.views import exchanged, peer_rows, peers, pes, told_loads
 from simmpp.machine.messages import LOAD, OBJECT, RAYS
 
 
@@ -23,20 +33,20 @@ def peer_of(s: Run, me: int, other: int) -> int:
 @kernel
 def known_load(s: Run, peer_row: int) -> int:
     """What a PE knows of the load of another; NONE: nothing (load_info none)."""
-    return load_known_of(s, peer_rows(s)[peer_row].key % s.processors, peer_row)
+    peer = peer_rows(s)[peer_row]
+    if s.load_info == PIGGYBACK:
+        return s.initial_load if peer.load == NONE else peer.load
+    return load_shown(s, peer.key % s.processors)
 
 
 @kernel
-def load_known_of(s: Run, other: int, peer_row: int) -> int:
-    """The same, where there may be no row yet (NONE)."""
+def load_shown(s: Run, other: int) -> int:
+    """The same where it is not told in headers."""
     if s.load_info == NO_INFO:
         return NONE
-    if s.load_info == EXACT or s.load_info == TWO:
-        return pes(s)[other].settled_load
     if s.load_info == SAMPLED:
         return pes(s)[other].sampled_load
-    is_heard = peer_row != NONE and peer_rows(s)[peer_row].load != NONE
-    return peer_rows(s)[peer_row].load if is_heard else s.initial_load
+    return pes(s)[other].settled_load
 
 
 @kernel
@@ -76,6 +86,8 @@ def hear_load(s: Run, me: int, m: Row, now_ps: int) -> None:
         peer_rows(s)[peer_row].load = m.load
         peer_rows(s)[peer_row].heard_ps = now_ps
         peer_rows(s)[peer_row].in_flight = 0
+        if s.steals:
+            told_loads(s)[me * s.island + pes(s)[m.source].place] = m.load + 1
     if s.refresh_ps != NONE and m.kind in (OBJECT, RAYS):
         note_exchange(s, me, peer_row)
 

@@ -11,7 +11,7 @@ from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Run
 from simmpp.engine.arrays.views import child_offsets, ends_ps, most_alive, pes, pixels, rays, rooms
 from simmpp.engine.pe.bounds.rooms import fits, note_memory
-from simmpp.engine.pe.rounds import count_in_round
+from simmpp.engine.pe.tables.rounds import count_in_round
 
 
 @kernel

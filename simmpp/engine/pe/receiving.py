@@ -24,8 +24,8 @@ from simmpp.engine.pe.peers import hear_load
 from simmpp.engine.pe.ready import cross, make_ready
 from simmpp.engine.pe.sending import answer, forget
 from simmpp.engine.pe.stealing import end_spell, give_pixels, take_pixels
+from simmpp.engine.pe.tables.tallies import take_deposits
 from simmpp.engine.pe.talking import get_on, hear
-from simmpp.engine.pe.tallies import take_deposits
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_receive
 from simmpp.machine.messages import DEPOSIT, LOAD, OBJECT, RAYS, REQUEST, STEAL, USER
@@ -65,21 +65,29 @@ def receive(s: Run, me: int, message: int, now_ps: int) -> int:
     # a rule.
     if s.service == BY_PE and (m.kind == REQUEST or m.part != NONE):
         clock_ps = answer(s, me, message, clock_ps, False)
-    if m.kind == USER:
-        clock_ps = hear(s, me, message, clock_ps)
-    elif m.kind == STEAL and m.purpose == FOR_PIXELS:
-        clock_ps = give_pixels(s, me, m.source, clock_ps)
-    elif m.kind == DEPOSIT:
-        take_deposits(s, m, clock_ps)
-    elif m.kind == OBJECT or m.n > 0:  # of rays, or pixels
-        get_on(pe)
-    if s.steals and m.n > 0:
-        end_spell(pe)
+    clock_ps = _react(s, me, pe, message, clock_ps)
     if s.record_counters:
         note_work(s, me, now_ps, clock_ps, clock_ps)
     pe.communication_ps += clock_ps - now_ps
     _forget_what_is_read(s, message)
     return clock_ps
+
+
+@kernel
+def _react(s: Run, me: int, pe: Row, message: int, now_ps: int) -> int:
+    """What becomes of other messages, and of the PE; returns the end of that."""
+    m = messages(s)[message]
+    if m.kind == USER:
+        return hear(s, me, message, now_ps)
+    if m.kind == STEAL and m.purpose == FOR_PIXELS:
+        return give_pixels(s, me, m, now_ps)
+    if m.kind == DEPOSIT:
+        take_deposits(s, m, now_ps)
+    elif m.kind == OBJECT or m.n > 0:  # of rays, or pixels
+        get_on(pe)
+        if s.steals and m.n > 0:
+            end_spell(pe)
+    return now_ps
 
 
 @kernel

@@ -4,7 +4,8 @@ It asks the one of its island with the highest load that it knows of, equal ones
 if that has none to give the next one: each once in an idle spell, which only rays or pixels end,
 and one at a time. A question is a header; the answer says whose pixels, from which on, and how
 many: half of those that are left (rounded down, so one stays), the last ones. That is always one
-piece of ``pixels``, for who asks has none: it becomes the thief's.
+piece of ``pixels``, for who asks has none: it becomes the thief's. A spell ends with its round of
+rays, too, and pixels are given in the round in which they were asked for only.
 
 Why a run still ends: spells end with a message that brings rays or pixels, and who holds pixels
 starts one, as its queue is empty, before it asks again. So between two tests or finished rays each
@@ -17,10 +18,9 @@ is left as in Hendler and Shavit 2002.
 from __future__ import annotations
 
 from simmpp.common.compiled import kernel
-from simmpp.engine.arrays.hashtable import find
-from simmpp.engine.arrays.records import FOR_PIXELS, NONE, Row, Run
-from simmpp.engine.arrays.views import asked_in, messages, peers, pes, pixels, rays
-from simmpp.engine.pe.peers import load_known_of, peer_of
+from simmpp.engine.arrays.records import FOR_PIXELS, NONE, PIGGYBACK, Row, Run
+from simmpp.engine.arrays.views import asked_in, messages, pes, pixels, rays, told_loads
+from simmpp.engine.pe.peers import load_shown
 from simmpp.engine.pe.sending import new_part, send
 from simmpp.machine.messages import STEAL, STEAL_BYTES
 
@@ -32,36 +32,46 @@ def steal(s: Run, me: int, now_ps: int) -> int:
     # Then its inbox is empty, and so are the shares: the first ray of them would fit.
     if pe.load > 0 or pe.awaits == 1 or pe.asked == s.island - 1:
         return now_ps
-    victim = _victim(s, me)
-    asked_in(s)[peer_of(s, me, victim)] = pe.spell
+    place = _victim(s, me, pe)
+    asked_in(s)[me * s.island + place] = pe.spell
     pe.asked += 1
     pe.awaits = 1
-    row = new_part(s, STEAL, victim, 0)
-    messages(s)[row].purpose = FOR_PIXELS
+    row = new_part(s, STEAL, pe.base + place, 0)
+    messages(s)[row].purpose, messages(s)[row].last = FOR_PIXELS, pe.round
     return send(s, me, row, now_ps, False)
 
 
 @kernel
-def _victim(s: Run, me: int) -> int:
-    """The one of the highest known load of those that were not asked in this spell."""
-    pe = pes(s)[me]
+def _victim(s: Run, me: int, pe: Row) -> int:
+    """The place of the one of the highest known load, of those that were not asked in this
+    spell."""
     victim, highest = NONE, NONE - 1
     for distance in range(1, s.island):
-        other = pe.base + (pe.place + distance) % s.island
-        peer_row = find(peers(s), me * s.processors + other)
-        if peer_row != NONE and asked_in(s)[peer_row] == pe.spell:
-            continue
-        load = load_known_of(s, other, peer_row)
-        if load > highest:
-            victim, highest = other, load
+        place = (pe.place + distance) % s.island
+        if asked_in(s)[me * s.island + place] != pe.spell:
+            load = _known_load(s, me, pe, place)
+            if load > highest:
+                victim, highest = place, load
     return victim
 
 
 @kernel
-def give_pixels(s: Run, me: int, thief: int, now_ps: int) -> int:
-    """Answer a question with half of the pixels that are left; returns the end of that."""
-    pe = pes(s)[me]
-    n = (pe.pixel_end - pe.pixel) // 2
+def _known_load(s: Run, me: int, pe: Row, place: int) -> int:
+    """Of one that there may be no row of ``peers`` for."""
+    if s.load_info != PIGGYBACK:
+        return load_shown(s, pe.base + place)
+    told = told_loads(s)[me * s.island + place]
+    return told - 1 if told > 0 else s.initial_load
+
+
+@kernel
+def give_pixels(s: Run, me: int, question: Row, now_ps: int) -> int:
+    """Answer a question with half of the pixels that are left; returns the end of that.
+
+    With none if a round has begun since it was asked: then the thief may have some of its own.
+    """
+    pe, thief = pes(s)[me], question.source
+    n = (pe.pixel_end - pe.pixel) // 2 if question.last == pe.round else 0
     pe.pixel_end -= n
     pe.n_ready -= n
     pe.load -= n

@@ -41,9 +41,9 @@ from simmpp.engine.pe.pace import cost_of_test_ps, pace_of, paced_ps, took
 from simmpp.engine.pe.peers import sample_loads
 from simmpp.engine.pe.ready import end_together, finish_ray, next_ready, pop_ready
 from simmpp.engine.pe.receiving import receive
-from simmpp.engine.pe.rounds import end_rounds, reduce, start_rounds
+from simmpp.engine.pe.tables.rounds import end_rounds, reduce, start_rounds
+from simmpp.engine.pe.tables.tallies import leave
 from simmpp.engine.pe.talking import get_on, rest, wake
-from simmpp.engine.pe.tallies import leave
 from simmpp.engine.record.counters import note_finished, note_held, note_load, note_work
 from simmpp.engine.record.log import note_compute
 from simmpp.machine.limits import CLOCK_LIMIT_PS

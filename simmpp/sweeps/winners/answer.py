@@ -20,8 +20,9 @@ from simmpp.sweeps.winners.contest import (
     UNSURE,
     Contest,
     contests_of,
+    replicated_policies,
 )
-from simmpp.sweeps.winners.fitting import fit_sentences, nothing_ran
+from simmpp.sweeps.winners.fitting import FITS, fit_of, fit_sentences, nothing_ran
 from simmpp.sweeps.winners.machines import Machines
 from simmpp.sweeps.winners.machines_told import machine_sentences
 from simmpp.sweeps.winners.points import NO_LABELS, Points, points_of
@@ -108,17 +109,21 @@ def _absent(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
 
 
 def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
-    """The replicated scene: it has more memory than the dataflows, unless these hold all too."""
+    """The replicated scene: it has more memory than the dataflows, unless these hold all too or a
+    capacity says that it fits as they do."""
     found = [contest for contest in contests if contest.ceiling]
+    fits = _places_for_the_scene(points)
+    if fitting := [contest for contest in found if points.groups[contest.best] in fits]:
+        where = (
+            "" if len(fitting) == len(contests) else f" in {len(fitting)} of {len(contests)} cases"
+        )
+        room = f"the whole scene fits into the memory of a PE{where}: held there"
+        yield _with_it(f"{room} (replicated, no dataflow)", fitting)
+    found = [contest for contest in found if points.groups[contest.best] not in fits]
     if not found:
         return
     held = [_held(points, contest.best) for contest in found]
     scarce = [share for share in held if share < 1]
-    ratios = [1 / (contest.ceiling or 1) for contest in found]
-    faster = sum(ratio > 1 for ratio in ratios)
-    text = f"the job takes {words.span(ratios)} times as long as with the fastest dataflow"
-    if len(found) > 1 and faster:
-        text += f" (longer in {faster} of {len(found)} cases)"
     if not scarce:
         room = "every memory has room for the whole scene: held there (replicated, no dataflow)"
     else:
@@ -128,7 +133,25 @@ def _ceiling(points: Points, contests: Sequence[Contest]) -> Iterator[Sentence]:
             f"{where}: it does not fit, as it takes {words.span(1 / s for s in scarce)} times the "
             "memory for objects that the dataflows have. With it"
         )
-    yield Sentence(words.capital(f"{room} {text}."), tuple(cases_of(found)))
+    yield _with_it(room, found)
+
+
+def _with_it(room: str, found: Sequence[Contest]) -> Sentence:
+    """What the replicated scene takes there."""
+    ratios = [1 / (contest.ceiling or 1) for contest in found]
+    longer = sum(ratio > 1 for ratio in ratios)
+    text = f"the job takes {words.span(ratios)} times as long as with the fastest dataflow"
+    if len(found) > 1 and longer:
+        text += f" (longer in {longer} of {len(found)} cases)"
+    return Sentence(words.capital(f"{room} {text}."), tuple(cases_of(found)))
+
+
+def _places_for_the_scene(points: Points) -> set[int]:
+    """Where a capacity has room for the whole scene, and for all else that its policy needs."""
+    policies = replicated_policies(points)
+    numbers = (n for n, row in enumerate(points.profits) if row["policy"] in policies)
+    fits = ((n, fit_of(points, n)) for n in numbers)
+    return {points.groups[n] for n, fit in fits if fit and fit.kind == FITS}
 
 
 def _held(points: Points, number: int) -> float:

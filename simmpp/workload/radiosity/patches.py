@@ -52,9 +52,26 @@ def patches_of(scene: Scene, settings: Radiosity) -> Patches:
     """
     check_scene(scene)
     faces = joined(_triangles(scene))
+    _refuse_no_area(scene, faces)
+    faces = _cut(faces, settings.patches)
+    materials = columns_of(scene).materials[faces.parts]
+    emitted, reflectance = _of_materials(scene)
+    if not (emitted[materials] > 0).any():
+        problem = "nothing shines: expected a material with Ke (OBJ) or emissiveFactor (glTF)"
+        raise SceneError(problem, where=scene.name)
+    objects = tuple(
+        Polygon(corners[: 4 if is_quad else 3], None, material)
+        for corners, is_quad, material in zip(
+            faces.points, faces.is_quad.tolist(), materials.tolist(), strict=True
+        )
+    )
+    cut = dataclasses.replace(scene, objects=objects)
+    return Patches(cut, areas_of(faces), faces.parts, emitted[materials], reflectance[materials])
+
+
+def _cut(faces: Faces, most: Fraction | float) -> Faces:
+    """Faces in halves until none is larger; ConfigError for too many."""
     areas = areas_of(faces)
-    _refuse_no_area(scene, faces, areas)
-    most = settings.patches
     limit = math.fsum(areas.tolist()) * float(most) if isinstance(most, Fraction) else most
     if float(np.ceil(areas / limit).sum()) > MOST_PATCHES:
         problem = f"there would be more than {MOST_PATCHES} patches: expected a larger area"
@@ -62,19 +79,7 @@ def patches_of(scene: Scene, settings: Radiosity) -> Patches:
     while (areas > limit).any():
         faces = halved(faces, areas > limit)
         areas = areas_of(faces)
-    materials = columns_of(scene).materials[faces.parts]
-    objects = tuple(
-        Polygon(corners[: 4 if is_quad else 3], None, material)
-        for corners, is_quad, material in zip(
-            faces.points, faces.is_quad.tolist(), materials.tolist(), strict=True
-        )
-    )
-    emitted, reflectance = _of_materials(scene)
-    if not (emitted[materials] > 0).any():
-        problem = "nothing shines: expected a material with Ke (OBJ) or emissiveFactor (glTF)"
-        raise SceneError(problem, where=scene.name)
-    cut = dataclasses.replace(scene, objects=objects)
-    return Patches(cut, areas, faces.parts, emitted[materials], reflectance[materials])
+    return faces
 
 
 def _triangles(scene: Scene) -> Faces:
@@ -92,7 +97,8 @@ def _triangles(scene: Scene) -> Faces:
     return Faces(padded, np.zeros(len(points), np.bool_), parts.astype(np.int64))
 
 
-def _refuse_no_area(scene: Scene, faces: Faces, areas: Floats) -> None:
+def _refuse_no_area(scene: Scene, faces: Faces) -> None:
+    areas = areas_of(faces)
     sides = lengths(np.roll(faces.points, -1, axis=1) - faces.points).max(axis=1, initial=0.0)
     flat = areas <= FLAT * sides * sides
     if flat.any():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simmpp.engine.residuals import times_of_residuals
+from simmpp.engine.tables.residuals import times_of_residuals
 
 LEFT = np.array([0.5, 0.1, 0.05, 0.009])
 

@@ -62,6 +62,21 @@ def test_what_does_not_fit_is_said_with_what_it_lacks_and_where() -> None:
     assert not any("failed" in text or "no result" in text for text in told)
 
 
+def test_where_the_scene_fits_it_is_a_choice_and_no_ceiling() -> None:
+    some = [bounded("replicated", 50, "32 GB", effective_fraction=1.0)]
+    some += [bounded(policy, 100, "32 GB") for policy in ("object", "ray")]
+    told = [sentence.text for sentence in answer_of(some, (CAPACITY,))]
+    assert told[1:] == [
+        "The whole scene fits into the memory of a PE: held there (replicated, no dataflow) the "
+        "job takes 0.5 times as long as with the fastest dataflow."
+    ]
+    several = [*some, *(bounded(p, 100, "8 GB") for p in ("object", "ray"))]
+    several.append(bounded("replicated", None, "8 GB"))
+    told = [sentence.text for sentence in answer_of(several, (CAPACITY,))]
+    assert any("fits into the memory of a PE in 1 of 2 cases: held" in text for text in told)
+    assert not any("ceiling" in text for text in told)
+
+
 def test_where_nothing_fits_the_answer_is_what_is_lacking() -> None:
     some = [bounded(policy, None, "4 GB", processors=nb) for policy in TIMES for nb in (4, 8)]
     told = [sentence.text for sentence in answer_of(some, (CAPACITY,))]

@@ -23,8 +23,8 @@ from simmpp.engine.arrays.views import (
 from simmpp.engine.pe.candidates import relist
 from simmpp.engine.pe.islands import owner_of
 from simmpp.engine.pe.peers import peer_of
-from simmpp.engine.pe.rounds import end_rounds
 from simmpp.engine.pe.sending import new_part, send
+from simmpp.engine.pe.tables.rounds import end_rounds
 from simmpp.engine.pe.telling import collect_peers
 from simmpp.machine.messages import DEPOSIT, DEPOSIT_BYTES
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simmpp.common.errors import ConfigError
-from simmpp.engine.tallies import reduction_of, sends_deposits
+from simmpp.engine.tables.tallies import reduction_of, sends_deposits
 from simmpp.machine.collective import barrier_ps
 from simmpp.machine.limits import CLOCK_LIMIT_PS, MOST_BYTES, beyond_the_clock
 from simmpp.machine.machine import Machine
@@ -16,8 +16,8 @@ def require_known(
     workload: Workload, machine: Machine, placement: Placement, policy: PolicyParameters
 ) -> None:
     """Raise ConfigError, with the key, for what no engine simulates."""
-    if policy.steals and workload.n_rounds > 1:
-        problem = f"value {policy.steal}: expected none for rays in {workload.n_rounds} rounds"
+    if policy.steals and workload.n_rounds > 1 and placement.window > 1:
+        problem = f"value {policy.steal}: expected none where several rounds are there together"
         raise ConfigError(problem, where="policy.steal")
     if sends_deposits(workload, placement):
         beside = "islands" if placement.islands > 1 else ""

@@ -19,6 +19,7 @@ from __future__ import annotations
 from simmpp.common.compiled import kernel
 from simmpp.engine.arrays.records import NONE, Row, Run
 from simmpp.engine.arrays.views import pes, pixels, ray_rounds, rays, rounds
+from simmpp.engine.pe.stealing import end_spell
 from simmpp.engine.record.counters import note_load, note_work
 from simmpp.engine.record.log import note_reduction
 
@@ -88,6 +89,8 @@ def _start_round(s: Run, pe: Row) -> None:
         pe.n_ready += pe.later - first
         pe.load += pe.later - first
         pe.peak_rays = max(pe.peak_rays, pe.load)
+    if s.steals:
+        end_spell(pe)  # whoever was asked in vain before may have some now
     pe.round += 1
 
 

@@ -1,0 +1,1 @@
+"""What a PE does of rounds and of results."""
