@@ -91,6 +91,8 @@ def new_state(
     scalars |= round_scalars(workload, machine, placement)
     scalars |= _of_the_policy(parameters, views, address_of)
     scalars |= {"random_key": key(seed, "policy"), **pace_scalars(machine, seed)}
+    if scalars["bounded"]:
+        scalars["least_share"] = int(arrays["rooms"]["share_rays"].min())
     state = State(arrays, scalars | flags, recording.sink)
     for name, of_pes in pace_columns(machine).items():
         state.pes[name] = of_pes

@@ -258,6 +258,7 @@ PARAMETERS = (
     "merge_requests",
     "measures",  # there is a capacity to compare with,
     "bounded",  # credits, and room for rays and objects,
+    "least_share",  # of rays that any PE has room for from another one
     "escapes",  # and a PE that can't go on fetches an object
     "n_rounds",
     "window",  # rounds that may be there together

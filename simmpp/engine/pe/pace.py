@@ -63,7 +63,9 @@ def paced_ps(cost_ps: int, pace: Pace) -> int:
 
 @kernel
 def _unevenly_ps(cost_ps: int, pace: Pace) -> int:
-    return scaled(scaled(cost_ps, pace.times, pace.per), pace.noise, ONE)
+    if pace.times != pace.per:
+        cost_ps = scaled(cost_ps, pace.times, pace.per)
+    return scaled(cost_ps, pace.noise, ONE) if pace.noise != ONE else cost_ps
 
 
 @kernel

@@ -33,7 +33,7 @@ def rays_allowed(s: Run, peer_row: int) -> int:
 @kernel
 def enough_for(s: Run, peer_row: int) -> int:
     """The batch that goes to a PE: no more than its share holds, but a ray."""
-    if not s.bounded:
+    if not s.bounded or s.send_from <= s.least_share:
         return s.send_from
     return min(s.send_from, rooms(s)[peer_rows(s)[peer_row].key % s.processors].share_rays)
 
