@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numba
 import numpy as np
 from by_hand import BYTE_PER_PS, OBJECT, case_of
 from numpy.typing import NDArray
 from oracles.hop_by_hop import Sent
 
+from simmpp.common.compiled import njit
 from simmpp.engine.arrays.records import MESSAGE
 from simmpp.engine.arrays.views import heap, messages
 from simmpp.engine.compiled_engine import move_first
@@ -44,7 +44,7 @@ def arrivals_of_bytes(machine: Machine, traffic: Sequence[Sent]) -> NDArray[np.i
     return state.messages["arrival_ps"].copy()
 
 
-@numba.njit
+@njit
 def _drive(runs: Any) -> None:
     s = runs[0]
     for row in range(s.messages_n):

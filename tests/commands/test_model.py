@@ -83,4 +83,4 @@ def test_a_wrong_ratio_is_one_line(tmp_path: Path, ratio: str) -> None:
 def test_memories_in_bytes_are_refused(tmp_path: Path) -> None:
     done = model(tmp_path, CONFIG.replace("memory.fraction: [1/4", "memory.bytes: [1 kB]}\n#"))
     assert done.exit_code == 2
-    assert "expected memory.fraction" in done.output
+    assert "expected shares, memory.fraction, for the model" in done.output

@@ -79,7 +79,8 @@ def test_random_machines_do_all_of_this() -> None:
     for seed in SEEDS:
         case = other_case(seed)
         result = result_of("compiled", case)
-        on_time = replace(case, placement=replace(case.placement, window=10**6, tallies="none"))
+        at_once = replace(case.placement, window=10**6, tallies="none")
+        on_time = replace(case, placement=at_once, policy=replace(case.policy, steal="none"))
         found["barriers"] += result.barriers > 0
         found["windows"] += result.barriers > 0 and case.placement.window > 1
         found["maxima"] += result.barriers > 0 and FORM_FACTOR in case.workload.kinds

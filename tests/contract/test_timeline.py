@@ -8,7 +8,7 @@ from builders import Case, cases
 from hypothesis import given, settings
 from numpy.typing import NDArray
 
-from simmpp.engine import initial as start
+from simmpp.engine import sizes as start
 from simmpp.engine import state
 from simmpp.engine.arrays.records import ARRIVAL, COMPUTE, NONE, RECEIVE, SEND
 from simmpp.engine.record.recording import Recording

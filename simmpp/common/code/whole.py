@@ -38,13 +38,15 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
 class _Whole(JITCodeLibrary):  # type: ignore[misc]
     """Instructions of what Python calls, with all that it calls, which nobody else can call.
 
-    So a kernel that is called from one place is put there.
+    So a kernel that is called from one place is put there. They get names of their own, as LLVM's
+    linker takes what is local to one module for what another one shares under the same name.
     """
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if function.linkage == Linkage.linkonce_odr:
                 function.linkage = Linkage.internal
+                function.name += ".inside"
         super()._optimize_final_module()
 
 

@@ -17,11 +17,13 @@ SERVED = replace(MACHINE, handoff_ps=5, get_startup_ps=3, completion_ps=4)
 
 
 def test_what_is_got_is_not_copied() -> None:
-    assert copies(MACHINE)[0] == [*MACHINE.pack, MACHINE.pack[0]]
+    few, rays = MACHINE.pack[0], MACHINE.pack[2]
+    assert copies(MACHINE)[0] == [*MACHINE.pack, few, few, rays]
     pack, unpack = copies(replace(SERVED, service=NIC))
     free = CopyCost()
-    assert pack == [free, free, MACHINE.pack[2], free, MACHINE.pack[0]]
-    assert unpack == [free, free, MACHINE.unpack[2], free, MACHINE.unpack[0]]
+    assert pack == [free, free, rays, free, few, few, rays]
+    few, rays = MACHINE.unpack[0], MACHINE.unpack[2]
+    assert unpack == [free, free, rays, free, few, few, rays]
 
 
 def test_the_papers_model_knows_pes_that_poll() -> None:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from statistics import NormalDist, fmean, stdev
 
 import pytest
+from by_hand import OBJECT, case_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +20,8 @@ from simmpp.machine.noise import _QUANTILES, DRAWS, ONE, factors
 from simmpp.machine.presets import OVERRIDDEN, machine
 from simmpp.machine.uneven import Straggler, bound_of, factor, speeds_of, total_speed
 from simmpp.model.known import require_known
+
+EMPTY = case_of(OBJECT, [], owners=(), object_bytes=())
 
 
 @pytest.mark.parametrize("noise", ["1/100", "1/20", "1/3", "1"])
@@ -120,7 +123,7 @@ def test_the_papers_model_knows_none_of_it(key: str) -> None:
     with pytest.raises(ConfigError, match=r"expected simulate where a machine has compute_startup"):
         config_from_mapping(config(machine, method="analytical"))
     with pytest.raises(ConfigError, match=r"^machine: the paper's analytical model knows tests"):
-        require_known(made(**machine))
+        require_known(made(**machine), EMPTY.workload)
 
 
 @pytest.mark.parametrize(

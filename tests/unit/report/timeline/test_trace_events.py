@@ -16,7 +16,7 @@ from builders import Case, cases, placement_of, workload_of
 from by_hand import MACHINE, OBJECT
 from hypothesis import given, settings
 
-from simmpp.engine import initial as start
+from simmpp.engine import sizes as start
 from simmpp.engine import state
 from simmpp.engine.record.recording import Recording
 from simmpp.engine.simulate import ENGINES, simulate
