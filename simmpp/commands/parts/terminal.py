@@ -25,7 +25,7 @@ OBJECTS_SHOWN = 20
 """Lines of a list of objects, unless all are asked for."""
 FAILED = 1
 """Exit code of a command that worked, when what it ran failed, or is not what it should be."""
-TRACER_S, ENGINE_S = 12, 45
+TRACER_S, ENGINE_S = 12, 28
 """What compiling takes on a core of 2020: ``tests/bench/bench_first_use.py`` measures it."""
 
 
