@@ -1,7 +1,8 @@
 """Kobayashi's problem 1 without scattering: published fluxes, quadrature, and particles.
 
 Source: Kobayashi, Sugimura and Nagaya 2001, "3D radiation transport benchmark problems and results
-for simple geometries with void region", Progress in Nuclear Energy 39, problem 1 (i).
+for simple geometries with void region", Progress in Nuclear Energy 39, problem 1 (i). The values
+were written down from memory; the quadrature here, which knows none of them, gives each digit.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ class Counters(NamedTuple):
     bytes: Ints
     """(nb, nb): with headers."""
     sizes: Ints
-    """(6, SIZES): messages of each kind whose bytes, with the header, have k binary digits."""
+    """(kinds, SIZES): messages of each kind whose bytes, with the header, have k binary digits."""
     load_ps: Ints
     """(nb,): rays held times how long."""
     held: NDArray[np.void]

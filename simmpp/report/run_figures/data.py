@@ -58,7 +58,7 @@ class Motion:
     bytes: Ints
     """(nb, nb): with headers."""
     sizes: Ints
-    """(4, k): messages of each kind whose bytes have k binary digits."""
+    """(kinds, k): messages of each kind whose bytes have k binary digits."""
     hops: Ints
     """(h,): messages that crossed 0, 1, ... links."""
     link_bytes: Ints
